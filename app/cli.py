@@ -1,0 +1,86 @@
+"""The command line: verbs are found as files in `app/commands`, and only the verb that is called is imported.
+
+A verb is a file `app/commands/NAME.py` (an underscore in the file name is a dash in the verb) that defines `command`,
+a `click.Command`; the first line of its docstring is its short help. Nothing else has to be touched to add one.
+"""
+
+from __future__ import annotations
+
+import ast
+import os
+import sys
+import traceback
+from collections.abc import Sequence
+from importlib import import_module
+from pathlib import Path
+
+import click
+
+from hal.errors import LostMotionError
+
+COMMANDS = Path(__file__).parent / "commands"
+
+
+class LazyGroup(click.Group):
+    """Finds verbs as files and imports a verb when it is called, so that `--help` is instant."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        return sorted(path.stem.replace("_", "-") for path in COMMANDS.glob("[a-z]*.py"))
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        stem = cmd_name.replace("-", "_")
+        if not (COMMANDS / f"{stem}.py").is_file():
+            return None
+        command = import_module(f"app.commands.{stem}").command
+        assert isinstance(command, click.Command)
+        return command
+
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        rows = [(name, _short_help(name)) for name in self.list_commands(ctx)]
+        if rows:
+            with formatter.section("Commands"):
+                formatter.write_dl(rows)
+
+
+def _short_help(name: str) -> str:
+    source = (COMMANDS / f"{name.replace('-', '_')}.py").read_text(encoding="utf-8")
+    doc = ast.get_docstring(ast.parse(source)) or ""
+    return doc.partition("\n")[0]
+
+
+@click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120})
+@click.option("--debug", is_flag=True, help="Show the traceback of a failure.")
+@click.version_option(package_name="lostmotion", prog_name="lostmotion")
+def cli(debug: bool) -> None:
+    """A bench for a pneumatic valve with backlash, and a diagnosis of its sim-to-real gap."""
+    if debug:
+        os.environ["LOSTMOTION_DEBUG"] = "1"
+
+
+def run(argv: Sequence[str]) -> int:
+    """Runs the command line and returns the exit code: 0 done, 1 failed, 2 bad usage or input, 130 interrupted."""
+    try:
+        result = cli.main(args=list(argv), prog_name="lostmotion", standalone_mode=False)
+        return result if isinstance(result, int) else 0
+    except click.exceptions.Exit as stop:
+        return int(stop.exit_code)
+    except click.ClickException as error:
+        error.show()
+        return 2
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("lostmotion: interrupted", err=True)
+        return 130
+    except LostMotionError as error:
+        return _fail(str(error), error.exit_code)
+    except BrokenPipeError:
+        sys.stderr.close()
+        return 1
+    except Exception as error:
+        return _fail(f"{type(error).__name__}: {error}; this is a defect, --debug shows where", 1)
+
+
+def _fail(message: str, code: int) -> int:
+    if os.environ.get("LOSTMOTION_DEBUG"):
+        traceback.print_exc()
+    click.echo(f"lostmotion: {message}", err=True)
+    return code
