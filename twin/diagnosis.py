@@ -1,0 +1,255 @@
+"""The answer of a diagnosis: where, which, how far, how sure, what next; and its JSON.
+
+Everything here is data. The keys that scripts rely on are those of the interfaces page; keys beyond them
+(`statement`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`) are free.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
+
+from logs.recording import DataNote
+
+Verdict = Literal["no_gap", "parameter", "effect", "effects", "unexplained"]
+Interval = tuple[float, float]
+
+_DIGITS = 6  # significant digits in the file: more would pretend, and would change with the machine
+
+
+@dataclass(frozen=True, slots=True)
+class Share:
+    """A fraction of the reducible squared error with its 95 % interval; below 0 where something masks."""
+
+    value: float
+    ci95: Interval
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """A number with its 95 % interval and its unit."""
+
+    value: float
+    ci95: Interval
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Bin:
+    """The share of the half-open bin `low <= quantity < high`."""
+
+    low: float
+    high: float
+    share: Share
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """A named cause. `heldout_gap_without`: the held-out RMS [% of travel] when this cause is left out."""
+
+    name: str
+    stage: str
+    probability: float
+    heldout_gap_without: float | None = None
+    parameters: Mapping[str, Estimate] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Ranked:
+    """One line of the ranking: a candidate, its probability, its held-out RMS [% of travel]."""
+
+    name: str
+    probability: float
+    heldout_gap: float | None
+
+
+@dataclass(frozen=True, slots=True)
+class Where:
+    """Shares of the reducible squared error, group by group; each group sums to 1, or is None when unknowable."""
+
+    stage: Mapping[str, Share] | None = None
+    attributed: Mapping[str, Share] | None = None
+    direction: Mapping[str, Share] | None = None
+    regime: Mapping[str, Share] | None = None
+    position: tuple[Bin, ...] | None = None
+    pressure: tuple[Bin, ...] | None = None
+    time: tuple[Bin, ...] | None = None
+    frequency: tuple[Bin, ...] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """RMS of position on held-out data, in `unit`; `reducible_closed` is None when there was nothing to close."""
+
+    before: float
+    retuned: float
+    after: float
+    noise_floor: float
+    reducible_closed: Share | None
+    unit: str = "percent_of_travel"
+
+
+@dataclass(frozen=True, slots=True)
+class NextExperiment:
+    """Why another experiment, and the file `sweep` runs; `file` is None when no experiment could help."""
+
+    why: str
+    file: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class EffectTest:
+    """What this record could show of one effect: `detection_limit` in `unit` of `parameter`, None if untestable."""
+
+    name: str
+    testable: bool
+    reason: str = ""
+    parameter: str = ""
+    detection_limit: float | None = None
+    unit: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """The verdict on a set of recordings. `statement` is the sentence an operator reads first."""
+
+    verdict: Verdict
+    statement: str
+    causes: tuple[Cause, ...]
+    ranking: tuple[Ranked, ...]
+    gap: Gap
+    where: Where = Where()
+    confusable: tuple[tuple[str, ...], ...] = ()
+    next_experiment: NextExperiment | None = None
+    data_quality: tuple[DataNote, ...] = ()
+    effects_tested: tuple[EffectTest, ...] = ()
+    residual_signature: Mapping[str, object] = field(default_factory=dict)
+    structure: tuple[str, ...] = ()
+    noise: Mapping[str, object] = field(default_factory=dict)
+    closed_loop: Mapping[str, object] = field(default_factory=dict)
+    version: str = ""
+
+    def to_json(self) -> dict[str, object]:
+        """Plain dicts, lists, numbers and None, ready for a strict JSON writer (no NaN, no infinity)."""
+        document = {
+            "verdict": self.verdict,
+            "statement": self.statement,
+            "causes": [_cause(cause) for cause in sorted(self.causes, key=lambda c: -c.probability)],
+            "confusable": self.confusable,
+            "ranking": [
+                {"name": line.name, "probability": line.probability, "heldout_gap": line.heldout_gap}
+                for line in self.ranking
+            ],
+            "where": _where(self.where),
+            "gap": _gap(self.gap),
+            "next_experiment": _next(self.next_experiment),
+            "data_quality": [_note(note) for note in self.data_quality],
+            "effects_tested": {test.name: _test(test) for test in self.effects_tested},
+            "residual_signature": self.residual_signature,
+            "structure": self.structure,
+            "noise": self.noise,
+            "closed_loop": self.closed_loop,
+            "version": self.version,
+        }
+        plain = json_ready(document)
+        assert isinstance(plain, dict)
+        return plain
+
+
+def write_diagnosis(diagnosis: Diagnosis, path: Path) -> None:
+    """Writes diagnosis.json (UTF-8, two-space indent, strict JSON)."""
+    text = json.dumps(diagnosis.to_json(), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def json_ready(value: object) -> object:
+    """`value` as JSON types: tuples and arrays as lists, six significant digits, non-finite numbers as None.
+
+    Raises: TypeError for an object that has no JSON form.
+    """
+    if value is None or isinstance(value, (str, bool, int)):
+        return value
+    if isinstance(value, float):
+        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {str(key): json_ready(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [json_ready(item) for item in value]
+    as_list = getattr(value, "tolist", None)  # numpy arrays and scalars
+    if as_list is not None:
+        return json_ready(as_list())
+    raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+def _cause(cause: Cause) -> dict[str, object]:
+    return {
+        "name": cause.name,
+        "stage": cause.stage,
+        "probability": cause.probability,
+        "heldout_gap_without": cause.heldout_gap_without,
+        "parameters": {
+            name: {"value": estimate.value, "ci95": estimate.ci95, "unit": estimate.unit}
+            for name, estimate in cause.parameters.items()
+        },
+    }
+
+
+def _where(where: Where) -> dict[str, object]:
+    return {
+        "stage": _group(where.stage),
+        "attributed": _group(where.attributed),
+        "direction": _group(where.direction),
+        "regime": _group(where.regime),
+        "position": _bins(where.position),
+        "pressure": _bins(where.pressure),
+        "time": _bins(where.time),
+        "frequency": _bins(where.frequency),
+    }
+
+
+def _group(group: Mapping[str, Share] | None) -> dict[str, object] | None:
+    if group is None:
+        return None
+    shares: dict[str, object] = {name: share.value for name, share in group.items()}
+    return shares | {"ci95": {name: share.ci95 for name, share in group.items()}}
+
+
+def _bins(bins: tuple[Bin, ...] | None) -> list[dict[str, object]] | None:
+    if bins is None:
+        return None
+    return [{"from": b.low, "to": b.high, "share": b.share.value, "ci95": b.share.ci95} for b in bins]
+
+
+def _gap(gap: Gap) -> dict[str, object]:
+    closed = gap.reducible_closed
+    return {
+        "unit": gap.unit,
+        "before": gap.before,
+        "retuned": gap.retuned,
+        "after": gap.after,
+        "noise_floor": gap.noise_floor,
+        "reducible_closed": None if closed is None else closed.value,
+        "ci95": None if closed is None else closed.ci95,
+    }
+
+
+def _next(experiment: NextExperiment | None) -> dict[str, object] | None:
+    return None if experiment is None else {"why": experiment.why, "file": experiment.file}
+
+
+def _note(note: DataNote) -> dict[str, object]:
+    return {"what": note.what, "handled": note.handled, "rows": note.rows, "first_row": note.first_row}
+
+
+def _test(test: EffectTest) -> dict[str, object]:
+    return {
+        "testable": test.testable,
+        "reason": test.reason,
+        "parameter": test.parameter,
+        "detection_limit": test.detection_limit,
+        "unit": test.unit,
+    }
