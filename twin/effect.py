@@ -1,0 +1,141 @@
+"""What an effect is: one claim about the valve that the design model leaves out.
+
+An effect is a file in `twin/effects/` that defines `EFFECT`. It has one or several *forms*, because physics often knows
+several (a creep with one or with two time constants); a wrong form must not lose to a wrong cause, so the diagnosis
+tries them all and the best one speaks for the effect. A form writes coefficients (`twin/slots.py`), bends the curves,
+or spreads the play; it never integrates anything itself, so no combination of effects is ever compiled again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.slots import GRID, neutral_ep, neutral_sensor, neutral_valve
+
+Stage = Literal["ep", "actuator", "sensor"]
+Kind = Literal["pressure", "position", "time", "fraction", "position_rate", "pressure_rate", "pressure_per_position"]
+Evidence = Literal["trajectory", "events"]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One number of a form. Bounds, starts and prior are in psi, in and s of the thesis's valve, and scale with others.
+
+    `starts` are the values that the fit tries first; `scale` is the size of a large effect and the spread of the prior;
+    the neutral value (no effect) is `neutral`. `smooth` is False where the response jumps with the parameter.
+    """
+
+    name: str
+    kind: Kind
+    lower: float
+    upper: float
+    starts: tuple[float, ...]
+    scale: float
+    doc: str
+    neutral: float = 0.0
+    smooth: bool = True
+    size: bool = True  # False for shape parameters (a time constant of a creep) that say nothing about the magnitude
+
+
+@dataclass(frozen=True, slots=True)
+class Scales:
+    """What turns the thesis's psi, in into a record's units: a percent bench has other magnitudes, the same physics."""
+
+    pressure: float = 1.0
+    position: float = 1.0
+    time: float = 1.0
+    pressure_unit: str = "psi"
+    position_unit: str = "in"
+
+    def factor(self, kind: Kind) -> float:
+        """Multiplier from reference units to record units."""
+        return {
+            "pressure": self.pressure,
+            "position": self.position,
+            "time": self.time,
+            "fraction": 1.0,
+            "position_rate": self.position / self.time,
+            "pressure_rate": self.pressure / self.time,
+            "pressure_per_position": self.pressure / self.position,
+        }[kind]
+
+    def unit(self, kind: Kind) -> str:
+        """Unit as printed."""
+        return {
+            "pressure": self.pressure_unit,
+            "position": self.position_unit,
+            "time": "s",
+            "fraction": "1",
+            "position_rate": f"{self.position_unit}/s",
+            "pressure_rate": f"{self.pressure_unit}/s",
+            "pressure_per_position": f"{self.pressure_unit}/{self.position_unit}",
+        }[kind]
+
+
+@dataclass(slots=True)
+class Coefficients:
+    """Everything the kernels need, filled from the design and then changed by effects. Made anew for each simulation.
+
+    `close_shift` and `open_shift` (shape (GRID,), pressure) bend the closing and the opening curve over the position
+    grid 0..travel: positive means that more pressure is needed at that position. `spreads`/`weights` describe the play.
+    """
+
+    design: DesignModel
+    duration_s: float
+    ep: FloatArray = field(default_factory=neutral_ep)
+    valve: FloatArray = field(default_factory=neutral_valve)
+    sensor: FloatArray = field(default_factory=neutral_sensor)
+    close_shift: FloatArray = field(default_factory=lambda: np.zeros(GRID))
+    open_shift: FloatArray = field(default_factory=lambda: np.zeros(GRID))
+    spreads: FloatArray = field(default_factory=lambda: np.zeros(1))
+    weights: FloatArray = field(default_factory=lambda: np.ones(1))
+    close_gain: float = 1.0  # compliance of the closing curve relative to the design's
+    open_gain: float = 1.0
+
+    @property
+    def xi(self) -> FloatArray:
+        """Position grid as a fraction of travel, 0 = open."""
+        return np.linspace(0.0, 1.0, GRID)
+
+
+Apply = Callable[[Coefficients, Sequence[float]], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units."""
+
+    name: str
+    parameters: tuple[Parameter, ...]
+    apply: Apply
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One claim about the valve.
+
+    `evidence` says how the diagnosis recognises it: by the trajectory, or by events in the reading (drop-outs).
+    `twins` are effects with nearly the same signature (shown in confusion sets); `equations` and `source` are printed.
+    """
+
+    name: str
+    stage: Stage
+    claim: str
+    equations: str
+    source: str
+    forms: tuple[Form, ...]
+    evidence: Evidence = "trajectory"
+    twins: tuple[str, ...] = ()
+
+    def form(self, name: str) -> Form:
+        """The form called `name`; raises KeyError naming the forms there are."""
+        for form in self.forms:
+            if form.name == name:
+                return form
+        raise KeyError(f"effect {self.name} has no form {name!r}; it has {', '.join(f.name for f in self.forms)}")

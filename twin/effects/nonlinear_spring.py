@@ -1,0 +1,46 @@
+"""Compliance depends on position: the spring stiffens or the effective diaphragm area changes over the stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+
+
+def _parameter(name: str, doc: str) -> Parameter:
+    return Parameter(
+        name=name,
+        kind="pressure",
+        lower=-1.5,
+        upper=1.5,
+        starts=(-0.25, 0.25),
+        scale=0.25,
+        doc=doc,
+    )
+
+
+def _bow(c: Coefficients, values: Sequence[float]) -> None:
+    shift = values[0] * 4.0 * c.xi * (1.0 - c.xi)
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+def _bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
+    _bow(c, values)
+    shift = values[1] * 10.4 * c.xi * (1.0 - c.xi) * (1.0 - 2.0 * c.xi)
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+_BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
+_SWING = _parameter("swing", "amplitude of the S-shaped part: extra pressure at 21 % of travel, less at 79 %")
+
+EFFECT = Effect(
+    name="nonlinear_spring",
+    stage="actuator",
+    claim="Compliance depends on position.",
+    equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi)",
+    source="Garcia, Control Eng. Practice 16 (2008) 1231; actuator data sheets (effective area over stroke)",
+    forms=(Form("bow", (_BOW,), _bow), Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing)),
+    twins=("lvdt_nonlinearity", "flow_force"),
+)

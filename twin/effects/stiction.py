@@ -1,0 +1,54 @@
+"""Breakaway friction above sliding friction: the stem sticks, then slips."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import FOREVER, V_BREAKAWAY, V_STICK_SPEED
+
+_BREAKAWAY = Parameter(
+    name="breakaway",
+    kind="pressure",
+    lower=0.0,
+    upper=4.0,
+    starts=(0.1, 0.2, 0.4, 0.8, 1.6),
+    scale=0.6,
+    doc="pressure above the sliding curve that is needed to start",
+    smooth=False,
+)
+_STICK_SPEED = Parameter(
+    name="stick_speed",
+    kind="position_rate",
+    lower=1e-5,
+    upper=0.05,
+    starts=(3e-4, 2e-3, 8e-3),
+    scale=4e-3,
+    doc="below this speed the stem sticks again",
+    smooth=False,
+    size=False,
+)
+
+
+def _slip_until_slow(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_BREAKAWAY] = values[0]
+    c.valve[V_STICK_SPEED] = values[1]
+
+
+def _one_jump(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_BREAKAWAY] = values[0]
+    c.valve[V_STICK_SPEED] = FOREVER
+
+
+EFFECT = Effect(
+    name="stiction",
+    stage="actuator",
+    claim="The stem sticks until the pressure exceeds sliding friction by the breakaway, then slips.",
+    equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed",
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503",
+    forms=(
+        Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
+        Form("one_jump", (_BREAKAWAY,), _one_jump),
+    ),
+    twins=("distributed_hysteresis", "position_dependent_friction"),
+)

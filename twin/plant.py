@@ -1,0 +1,124 @@
+"""The chain: E/P converter, valve, sensor, with effects inserted by name. Arrays in, arrays out; no state is kept.
+
+The design model is interfaces.md's, exactly; effects change coefficients, curves and spreads (see `twin/effect.py`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.effect import Coefficients, Form
+from twin.kernels.ep import ep_kernel
+from twin.kernels.sensor import sensor_kernel
+from twin.kernels.valve import valve_kernel
+from twin.slots import (
+    EP_TAU_FALL_S,
+    EP_TAU_RISE_S,
+    GRID,
+    S_TRAVEL,
+    V_HIGH,
+    V_RATE_CLOSE,
+    V_RATE_OPEN,
+    V_TAU_CLOSE_S,
+    V_TAU_OPEN_S,
+)
+from twin.timegrid import TimeGrid
+
+_TABLE = 1025
+
+
+@dataclass(frozen=True, slots=True)
+class Inserted:
+    """An effect at work: one form with its values, in the order of its parameters and in record units."""
+
+    effect: str
+    form: Form
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Plant:
+    """A design model with effects; prints like a sentence."""
+
+    design: DesignModel
+    inserted: Sequence[Inserted] = field(default_factory=tuple)
+
+    def coefficients(self, duration_s: float) -> Coefficients:
+        """What the kernels need, with all effects written in."""
+        c = Coefficients(self.design, duration_s)
+        d = self.design
+        c.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = d.ep_tau_s
+        c.valve[V_HIGH] = d.travel
+        c.valve[[V_TAU_CLOSE_S, V_TAU_OPEN_S]] = d.tau_s
+        c.valve[[V_RATE_CLOSE, V_RATE_OPEN]] = d.rate_limit
+        c.sensor[S_TRAVEL] = d.travel
+        for one in self.inserted:
+            one.form.apply(c, one.values)
+        return c
+
+    def __str__(self) -> str:
+        d = self.design
+        words = [
+            f"a valve that closes from {d.a1:.4g} and opens at {d.a2:.4g} {d.pressure_unit}, "
+            f"{d.compliance:.4g} {d.position_unit}/{d.pressure_unit}, lag {d.tau_s:.3g} s"
+        ]
+        for one in self.inserted:
+            values = ", ".join(f"{p.name} {v:.4g}" for p, v in zip(one.form.parameters, one.values, strict=True))
+            words.append(f"{one.effect} ({values})")
+        return " with ".join([words[0], " and ".join(words[1:])] if len(words) > 1 else words)
+
+
+def pressure_response(c: Coefficients, grid: TimeGrid, command: FloatArray, p0: float) -> FloatArray:
+    """Pressure on the fine grid, shape (n_fine,), from pressure `p0` at the first row."""
+    out = np.empty(grid.n_fine)
+    ep_kernel(grid.time_s, command, grid.offsets, c.ep, p0, out)
+    return out
+
+
+def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: float, w0: float) -> FloatArray:
+    """True stem position on the fine grid from the pressure there; `x0` stem and `w0` play output at the first row."""
+    first, step, closing, opening = curve_tables(c)
+    out = np.empty(grid.n_fine)
+    valve_kernel(
+        grid.time_s, pressure, grid.offsets, c.valve, first, step, closing, opening, c.spreads, c.weights, x0, w0, out
+    )
+    return out
+
+
+def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray) -> FloatArray:
+    """Reading at the rows, shape (n,), from the stem on the fine grid."""
+    out = np.empty(grid.time_s.size)
+    sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out)
+    return out
+
+
+def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]:
+    """The two curves as tables over a uniform pressure grid: (first pressure, step, closing, opening)."""
+    d = c.design
+    k1, k2 = d.compliance * c.close_gain, d.compliance * c.open_gain
+    if not c.close_shift.any() and not c.open_shift.any():
+        return 0.0, 1.0, k1 * (np.arange(2.0) - d.a1), k2 * (np.arange(2.0) - d.a2)
+    w = np.linspace(-0.5, 1.5, 2 * GRID - 1)
+    close_shift = np.interp(w, c.xi, c.close_shift)
+    open_shift = np.interp(w, c.xi, c.open_shift)
+    # A curve that would fall back is a snap: the stem jumps to the next position that needs the same pressure.
+    close_p = np.maximum.accumulate(w * d.travel / k1 + d.a1 + close_shift)
+    open_p = np.maximum.accumulate(w * d.travel / k2 + d.a2 + open_shift)
+    grid = np.linspace(min(close_p[0], open_p[0]), max(close_p[-1], open_p[-1]), _TABLE)
+    return grid[0], grid[1] - grid[0], np.interp(grid, close_p, w * d.travel), np.interp(grid, open_p, w * d.travel)
+
+
+def effect_tables(inserted: Sequence[Inserted]) -> Mapping[str, Mapping[str, float | str]]:
+    """The effects as `[effects.NAME]` tables of a design model file."""
+    return {
+        one.effect: {
+            "form": one.form.name,
+            **{p.name: v for p, v in zip(one.form.parameters, one.values, strict=True)},
+        }
+        for one in inserted
+    }

@@ -1,0 +1,96 @@
+"""Where each coefficient stands in the kernels' flat vectors. An effect writes here; a kernel reads here.
+
+Plain integers rather than an enum, because the compiled kernels use them as constants. Every slot has a neutral value
+in `NEUTRAL`; a vector of neutral values is the design model of interfaces.md.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from logs.recording import FloatArray
+
+# --- E/P converter: command to pressure -------------------------------------------------------------------------
+EP_DEAD_S = 0  # pure delay [s]
+EP_GAIN = 1  # static gain [-]
+EP_ZERO = 2  # zero error [pressure]
+EP_BAND = 3  # half width of the ignored band [pressure]
+EP_BAND_MODE = 4  # 0 none, 1 hold, 2 play, 3 overlap (flow from the edge), 4 overlap (full flow outside)
+EP_TAU_RISE_S = 5
+EP_TAU_FALL_S = 6
+EP_RATE_UP = 7  # [pressure/s]
+EP_RATE_DOWN = 8
+EP_SUPPLY = 9  # highest pressure [pressure]
+EP_COUNT = 10
+
+# --- valve: pressure to stem ------------------------------------------------------------------------------------
+V_LOW = 0  # lower stop [position]
+V_HIGH = 1  # upper stop
+V_TAU_CLOSE_S = 2
+V_TAU_OPEN_S = 3
+V_RATE_CLOSE = 4  # [position/s]
+V_RATE_OPEN = 5
+V_IN_MOTION = 6  # 1: friction inside the force balance, the stem stops when the pressure reverses
+V_BREAKAWAY = 7  # pressure above sliding friction needed to start [pressure]
+V_STICK_SPEED = 8  # below this speed the stem sticks again [position/s]
+V_DRIFT_RATE = 9  # growth of the half deadband [pressure/s]
+V_DRIFT_AMP = 10  # exponential part of that growth [pressure]
+V_DRIFT_TAU_S = 11
+V_WEAR = 12  # growth of the half deadband with travelled distance [pressure/position]
+V_TAU_BEFORE_S = 13  # lag between pressure and play
+V_TAU_AFTER_S = 14  # lag between play and stem
+V_CREEP1 = 15  # share of the motion that creeps [-]
+V_CREEP1_TAU_S = 16
+V_CREEP2 = 17
+V_CREEP2_TAU_S = 18
+V_STEP_TIME_S = 19  # when the half deadband changes by V_STEP [s]
+V_STEP = 20
+V_COUNT = 21
+
+# --- sensor: stem to reading ------------------------------------------------------------------------------------
+S_GAIN = 0
+S_ZERO = 1
+S_BOW = 2  # curvature: bow at mid travel [fraction of travel]
+S_SWING = 3  # S-shaped part [fraction of travel]
+S_DRIFT_RATE = 4  # [position/s]
+S_DRIFT_AMP = 5
+S_DRIFT_TAU_S = 6
+S_PLAY = 7  # lost motion, full width [position]
+S_LAG_S = 8
+S_HOLD_S = 9  # refresh period of the reading [s]
+S_HOLD_PHASE_S = 10
+S_STEP = 11  # resolution of the reading [position]
+S_TRAVEL = 12  # travel that bow and swing refer to [position]
+S_COUNT = 13
+
+FOREVER = 1e30
+
+#: Points of the position grid on which effects may bend the two curves.
+GRID = 65
+#: Elements of a distributed play.
+PLAYS = 12
+
+
+def neutral_ep() -> FloatArray:
+    """E/P coefficients without any effect; lags are set by the design."""
+    c = np.zeros(EP_COUNT)
+    c[EP_GAIN] = 1.0
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY]] = FOREVER
+    return c
+
+
+def neutral_valve() -> FloatArray:
+    """Valve coefficients without any effect; curves, lags, rates and stops are set by the design."""
+    c = np.zeros(V_COUNT)
+    c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
+    c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S]] = 1.0
+    return c
+
+
+def neutral_sensor() -> FloatArray:
+    """Sensor coefficients of a perfect reading."""
+    c = np.zeros(S_COUNT)
+    c[S_GAIN] = 1.0
+    c[S_DRIFT_TAU_S] = 1.0
+    c[S_TRAVEL] = 1.0
+    return c
