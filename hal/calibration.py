@@ -1,0 +1,53 @@
+"""What the LVDT's signal means in inches: two points, or a table."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Sequence
+from datetime import date
+from typing import Annotated, Self
+
+from pydantic import BaseModel, ConfigDict, Field, model_validator
+
+
+class Calibration(BaseModel):
+    """A table of (signal, position [in]), straight between its points and, beyond its ends, on along the last segment.
+
+    Two points are the usual two-point calibration. Both columns must rise or fall strictly.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+    id: str
+    made: date
+    expires: date | None = None
+    instrument: str = ""
+    points: Annotated[tuple[tuple[float, float], ...], Field(min_length=2)]
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for column, name in ((0, "signal"), (1, "position")):
+            steps = [b[column] - a[column] for a, b in zip(self.points, self.points[1:], strict=False)]
+            if not (all(step > 0 for step in steps) or all(step < 0 for step in steps)):
+                raise ValueError(f"the {name} column of points must rise or fall strictly; sort the rows")
+        if self.expires is not None and self.expires < self.made:
+            raise ValueError(f"expires ({self.expires}) lies before made ({self.made})")
+        return self
+
+    def to_in(self, signal: float) -> float:
+        """The position [in] of a signal, in the unit of the register's `eng`."""
+        return _interpolate([p[0] for p in self.points], [p[1] for p in self.points], signal)
+
+    def to_signal(self, position_in: float) -> float:
+        """The signal of a position [in]; the inverse of `to_in`."""
+        return _interpolate([p[1] for p in self.points], [p[0] for p in self.points], position_in)
+
+    def expired(self, today: date) -> bool:
+        return self.expires is not None and today > self.expires
+
+
+def _interpolate(x: Sequence[float], y: Sequence[float], at: float) -> float:
+    if x[0] > x[-1]:
+        x, y = x[::-1], y[::-1]
+    i = min(max(bisect_right(x, at) - 1, 0), len(x) - 2)
+    return y[i] + (y[i + 1] - y[i]) * (at - x[i]) / (x[i + 1] - x[i])

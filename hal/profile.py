@@ -1,0 +1,212 @@
+"""A bench in a TOML file: line, devices, registers, limits, calibration; checked when read, fixed afterwards."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import Field, ValidationError, model_validator
+
+from hal.calibration import Calibration
+from hal.device import Device
+from hal.errors import BadInput
+from hal.register import Part, Register, Verified
+
+FOLDER = Path(__file__).parent / "profiles"
+_HINTS = {
+    "extra_forbidden": "unknown key; remove it or correct its spelling",
+    "missing": "missing; add it",
+}
+
+
+class Serial(Part):
+    """The line. `pacing = "none"` leaves out the silence before each frame, for lines that have no bits (pty, TCP)."""
+
+    baud: Annotated[int, Field(ge=300, le=4_000_000)] = 19200
+    parity: Literal["N", "E", "O"] = "N"
+    stop_bits: Literal[1, 2] = 1
+    pacing: Literal["spec", "none"] = "spec"
+
+    @property
+    def char_s(self) -> float:
+        """The time of one character [s]: start, 8 data, parity and stop bits."""
+        return (9 + (self.parity != "N") + self.stop_bits) / self.baud
+
+    @property
+    def silence_s(self) -> float:
+        """t3.5 [s]. Source: Modbus over serial line V1.02, section 2.5.1.1: fixed at 1.75 ms above 19200 baud."""
+        return 3.5 * self.char_s if self.baud <= 19200 else 0.00175
+
+
+class Limits(Part):
+    """What the safety layer holds the bench to. `slew_per_s` in command units; None: as fast as it is commanded."""
+
+    command_min: float
+    command_max: float
+    slew_per_s: Annotated[float, Field(gt=0)] | None = None
+    position_min_in: float | None = None
+    position_max_in: float | None = None
+    pressure_max_psi: float | None = None
+    max_missing: Annotated[int, Field(ge=1)] = 5  # consecutive ticks without a trusted reading
+    max_age_s: Annotated[float, Field(gt=0)] = 1.0  # age of the last good reading
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        if self.command_min >= self.command_max:
+            raise ValueError(f"command_min {self.command_min:g} must be below command_max {self.command_max:g}")
+        low, high = self.position_min_in, self.position_max_in
+        if low is not None and high is not None and low >= high:
+            raise ValueError(f"position_min_in {low:g} must be below position_max_in {high:g}")
+        return self
+
+
+class Signals(Part):
+    """The registers of a tick. `sequence` counts the device's samples; `aux` holds further channels by name."""
+
+    command: Register
+    position: Register
+    pressure: Register | None = None
+    readback: Register | None = None
+    sequence: Register | None = None
+    aux: dict[str, Register] = Field(default_factory=dict)
+
+    def named(self) -> dict[str, Register]:
+        """Every signal of the profile by name, the command included."""
+        fixed = {
+            "command": self.command,
+            "readback": self.readback,
+            "sequence": self.sequence,
+            "pressure": self.pressure,
+            "position": self.position,
+        }
+        return {name: register for name, register in fixed.items() if register is not None} | self.aux
+
+
+class Profile(Part):
+    """Everything the HAL knows of one bench. `safe_direction`: at the end the valve is vented, or held where it is."""
+
+    name: str
+    title: str = ""
+    verified: Verified = "unverified"
+    source: str = ""
+    travel_in: Annotated[float, Field(gt=0)]
+    safe_direction: Literal["vent", "hold"] = "vent"
+    safe_command: float = 0.0
+    readback_tolerance: Annotated[float, Field(ge=0)] | None = None  # None: two counts of the command register
+    serial: Serial = Serial()
+    limits: Limits
+    devices: Annotated[dict[str, Device], Field(min_length=1, max_length=2)]
+    signals: Signals
+    calibration: Calibration | None = None
+
+    @model_validator(mode="after")
+    def _check(self) -> Self:
+        for name, register in self.every_register().items():
+            self._check_register(name, register)
+        ids = [device.id for device in self.devices.values()]
+        if len(set(ids)) != len(ids):
+            raise ValueError(f"devices: unit id {ids[0]} is given twice on one line")
+        if not self.limits.command_min <= self.safe_command <= self.limits.command_max:
+            raise ValueError(f"safe_command {self.safe_command:g} is outside limits.command_min to command_max")
+        if self.calibration is None and self.signals.position.unit != "in":
+            raise ValueError(f"signals.position is in '{self.signals.position.unit}': a [calibration] to in is needed")
+        if self.signals.pressure is not None and self.signals.pressure.unit != "psi":
+            raise ValueError(f"signals.pressure.unit is '{self.signals.pressure.unit}': it must come out in psi")
+        self._check_command_fits()
+        return self
+
+    def _check_register(self, name: str, register: Register) -> None:
+        if register.device not in self.devices and (register.device or len(self.devices) > 1):
+            raise ValueError(f"{name}.device '{register.device}' is not one of {', '.join(self.devices)}")
+        if register.address < self.device_of(register).address_base:
+            raise ValueError(f"{name}.address 0 does not exist on a device with address_base = 1")
+
+    def _check_command_fits(self) -> None:
+        for end in (self.limits.command_min, self.limits.command_max):
+            try:
+                self.signals.command.to_words(end, "ABCD")
+            except ValueError as error:
+                raise ValueError(f"signals.command cannot carry the command limit {end:g}: {error}") from error
+
+    def every_register(self) -> dict[str, Register]:
+        """Every register by its place in the file, those of the watchdogs included."""
+        found = {f"signals.{name}": register for name, register in self.signals.named().items()}
+        for name, device in self.devices.items():
+            for key in ("timeout", "enable", "status", "safe_value", "emergency"):
+                register = getattr(device.watchdog, key, None) if device.watchdog else None
+                if register is not None:
+                    found[f"devices.{name}.watchdog.{key}"] = self._placed(register, name)
+        return found
+
+    @staticmethod
+    def _placed(register: Register, device: str) -> Register:
+        return register if register.device else register.model_copy(update={"device": device})
+
+    def device_name(self, register: Register) -> str:
+        """The name of the device that has this register."""
+        return register.device or next(iter(self.devices))
+
+    def device_of(self, register: Register) -> Device:
+        return self.devices[self.device_name(register)]
+
+    def wire_address(self, register: Register) -> int:
+        """The address as it goes over the wire, counted from 0."""
+        return register.address - self.device_of(register).address_base
+
+    def table_of(self, register: Register) -> Literal["holding", "input", "coil"]:
+        """Which of the device's tables holds this register."""
+        if register.table is not None:
+            return register.table
+        return "holding" if self.device_of(register).read_fc == 3 else "input"
+
+    @property
+    def command_unit(self) -> str:
+        return self.signals.command.unit or "psi"
+
+    def position_in(self, signal: float) -> float:
+        """Inches from the scaled position register: through the calibration where there is one."""
+        return signal if self.calibration is None else self.calibration.to_in(signal)
+
+    def position_signal(self, position_in: float) -> float:
+        """The scaled position register that means `position_in`; the inverse of `position_in`."""
+        return position_in if self.calibration is None else self.calibration.to_signal(position_in)
+
+
+def profile_names() -> list[str]:
+    """The profiles that come with the program."""
+    return sorted(path.stem for path in FOLDER.glob("*.toml"))
+
+
+def load_profile(path_or_name: str | Path) -> Profile:
+    """Reads a profile: a name from `hal/profiles`, or the path of a TOML file.
+
+    Raises: `BadInput` naming the file and the key.
+    """
+    text = str(path_or_name)
+    path = Path(text)
+    if not text.endswith(".toml") and path.name == text:
+        path = FOLDER / f"{text}.toml"
+        if not path.is_file():
+            raise BadInput(
+                f"there is no profile '{text}'; there are {', '.join(profile_names())}, or give a .toml file"
+            )
+    try:
+        content = tomllib.loads(path.read_text(encoding="utf-8"))
+    except OSError as error:
+        raise BadInput(f"profile {path} cannot be read: {error.strerror}; give a name or a .toml file") from error
+    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+        raise BadInput(f"profile {path} is not valid TOML: {error}") from error
+    return parse_profile(content, str(path))
+
+
+def parse_profile(content: dict[str, Any], origin: str) -> Profile:
+    """Checks a profile that is already in memory. Raises: `BadInput` naming `origin` and the key."""
+    try:
+        return Profile.model_validate(content)
+    except ValidationError as error:
+        first = error.errors(include_url=False)[0]
+        key = ".".join(str(part) for part in first["loc"])
+        what = _HINTS.get(first["type"]) or first["msg"].removeprefix("Value error, ")
+        more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
+        raise BadInput(f"profile {origin}: {key + ': ' if key else ''}{what}{more}") from error
