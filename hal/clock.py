@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 import time
+from datetime import UTC, datetime
 from typing import Protocol
 
 
@@ -46,3 +47,8 @@ class SteppedClock:
     def sleep_until(self, time_s: float) -> None:
         with self._lock:
             self._now_s = max(self._now_s, time_s)
+
+
+def utc_now() -> datetime:
+    """Calendar time, for documents that people read; never for measuring."""
+    return datetime.now(UTC)

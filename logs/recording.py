@@ -15,7 +15,10 @@ CommandTiming = Literal["before", "after", "unknown"]
 
 @dataclass(frozen=True, slots=True)
 class DataNote:
-    """One finding of the data-quality check: `what` happened, how it was `handled`, in how many `rows`, from where."""
+    """One finding of the data-quality check: `what` happened, how it was `handled`, in how many `rows`, from where.
+
+    `first_row` is the first of them in the file, counted from 1 below the header.
+    """
 
     what: str
     handled: str

@@ -1,0 +1,113 @@
+"""Any recording as arrays: a run folder, or a stranger's CSV or Parquet with its own names, units and defects."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from hal.errors import BadInput
+from logs.assemble import Signals, assemble
+from logs.layout import is_run_folder
+from logs.recording import CommandTiming, Recording
+from logs.roles import QUANTITY, Column, Role, assign, parse_pairs, split_header
+from logs.table import Table, read_table
+from logs.units import conversion
+
+if TYPE_CHECKING:
+    from logs.run import Run
+
+
+def load_recording(
+    path: Path, *, mapping: str | None = None, units: str | None = None, command_timing: CommandTiming = "before"
+) -> Recording:
+    """Reads `path` into house units (psi, in, s; percent where the file is in percent), checked.
+
+    `mapping` is "time=COL,command=COL,pressure=COL,position=COL,target=COL" ("pressure=" leaves it out), `units` is
+    "command=kPa,position=mm,time=ms"; both win over what the headers say. A file with timing "after" is turned into
+    "before", so that a recording only ever has the timing "before" or "unknown".
+    Raises: `BadInput` with file, row and value for what cannot be used; everything repaired is in `Recording.notes`.
+    """
+    folder = path if path.is_dir() else path.parent if path.name in ("run.json", "samples.arrows") else None
+    given = parse_pairs(units, "--units")
+    if folder is None:
+        return _load_table(path, parse_pairs(mapping, "--map"), given, command_timing)
+    if not is_run_folder(folder):
+        raise BadInput(f"{folder}: a folder without run.json is no run; name a run folder, a CSV or a Parquet file")
+    if mapping or units:
+        raise BadInput(f"{folder}: a recorded run knows its columns and units; leave out --map and --units")
+    from logs.run import read_run
+
+    return recording_of_run(read_run(folder), command_timing)
+
+
+def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Recording:
+    """The samples of a run. Raises: `BadInput` when a needed column is missing or no sample is usable."""
+    where = str(run.path)
+    if run.rows < 2:
+        raise BadInput(f"{where}: the run holds {run.rows} samples ({run.reason}); a recording needs at least 2")
+    names = [name for name in run.columns if not name.startswith("next_")]
+    columns = assign(names, {}, where)
+    stated = {role: run.units.get(column.header) or column.unit for role, column in columns.items()}
+    signals = Signals(
+        values={role: run.columns[column.header] for role, column in columns.items()},
+        conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
+        headers={role: column.header for role, column in columns.items()},
+        quality={name: run.columns[name] for name in names if name == "quality" or name.endswith("_quality")},
+    )
+    meta = {"run": run.start, "status": run.status, "reason": run.reason, "problems": run.problems}
+    return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)
+
+
+def _load_table(
+    path: Path, mapping: Mapping[Role, str], units: Mapping[Role, str], command_timing: CommandTiming
+) -> Recording:
+    table = read_table(path)
+    if not table.has_header and not mapping:
+        raise BadInput(
+            f"{path}: the file has no header; add a line such as time_s,command_psi,position_in, "
+            "or name the columns by number, as in --map time=1,command=2,position=3"
+        )
+    columns = assign(table.headers, mapping, str(path))
+    stated = {role: _unit(role, columns, units, table) for role in columns}
+    signals = Signals(
+        values={role: table.number(column.header) for role, column in columns.items()},
+        conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
+        headers={role: column.header for role, column in columns.items()},
+        unsaid=tuple(role for role, unit in stated.items() if not unit),
+        notes=table.notes,
+        locate=table.locate,
+    )
+    return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta={"file": str(path)})
+
+
+def _unit(role: Role, columns: Mapping[Role, Column], units: Mapping[Role, str], table: Table) -> str:
+    """The unit of a column: as the operator says, as the file says, as its partner's is; "" where nobody says."""
+    if table.is_calendar(columns[role].header):
+        return "s"
+    if role in units:
+        return units[role]
+    own = _written(columns[role], table)
+    partner = _PARTNER.get(role)
+    if partner is None or partner not in columns:
+        return own
+    beside = _written(columns[partner], table)
+    # The operator's word on one of a pair holds for both where the file treats them alike, or is silent on this one.
+    return (units.get(partner) or own or beside) if own in ("", beside) else own
+
+
+_PARTNER: Mapping[Role, Role] = {
+    "command": "pressure",
+    "pressure": "command",
+    "position": "target",
+    "target": "position",
+}
+
+
+def _written(column: Column, table: Table) -> str:
+    return table.header_units.get(column.header, "") or column.unit
+
+
+def headers_of(path: Path) -> tuple[Column, ...]:
+    """The columns of a stranger's file, for telling an operator what could be mapped."""
+    return tuple(split_header(header) for header in read_table(path).headers)

@@ -1,0 +1,231 @@
+"""A stranger's table read into arrays: CSV in its many spellings, Parquet, Arrow; says which row is wrong."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hal.errors import BadInput
+from logs.dialect import MISSING, Dialect, clean, sniff, split
+from logs.recording import DataNote, FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Table:
+    """A file whose columns are converted when they are asked for.
+
+    `number(header)` gives float64, NaN where a cell is empty; times of day and dates become seconds.
+    Row r of the arrays is row r + 1 for people. `header_units` come from a units row or from Parquet field metadata.
+    """
+
+    where: str
+    headers: tuple[str, ...]
+    rows: int
+    column: Callable[[str], Any]
+    locate: Callable[[int], str]
+    has_header: bool = True
+    header_units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[DataNote, ...] = ()
+
+    def number(self, header: str) -> FloatArray:
+        """Raises: `BadInput` with line, column and cell for the first cell that is no number."""
+        import pyarrow as pa
+
+        array = self.column(header)
+        if pa.types.is_temporal(array.type):
+            return _seconds(array)
+        if pa.types.is_null(array.type):
+            return np.full(len(array), np.nan)
+        if pa.types.is_string(array.type) or pa.types.is_large_string(array.type):
+            return self._parsed(header, array)
+        return np.asarray(array.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False), dtype=np.float64)
+
+    def is_calendar(self, header: str) -> bool:
+        """Whether a column holds dates or times of day, which become seconds by themselves."""
+        import pyarrow as pa
+
+        return bool(pa.types.is_temporal(self.column(header).type))
+
+    def _parsed(self, header: str, array: Any) -> FloatArray:
+        """A column that came as text because of a cell or two: the missing ones are NaN, anything else is refused."""
+        values = np.full(len(array), np.nan)
+        for row, cell in enumerate(array.to_pylist()):
+            text = (cell or "").strip()
+            if text in MISSING:
+                continue
+            try:
+                values[row] = float(text)
+            except ValueError as error:
+                raise BadInput(
+                    f"{self.where}: {self.locate(row)}: '{text}' in column '{header}' is not a number; "
+                    "correct the cell, or leave it empty where the value is missing"
+                ) from error
+        return values
+
+
+def read_table(path: Path) -> Table:
+    """Opens a CSV, Parquet or Arrow file.
+
+    Raises: `BadInput` with the file, and the line where there is one, when it cannot be read as a table.
+    """
+    try:
+        with path.open("rb") as file:
+            magic = file.read(6)
+            rest = b"" if magic[:4] == b"PAR1" or magic == b"ARROW1" else magic + file.read()
+    except OSError as error:
+        raise BadInput(f"{path}: cannot be read ({error.strerror}); check the path") from error
+    if rest or not magic:
+        return _read_csv(path, rest)
+    return _read_arrow(path, parquet=magic[:4] == b"PAR1")
+
+
+def _read_csv(path: Path, data: bytes) -> Table:
+    import pyarrow as pa
+    from pyarrow import csv
+
+    where = str(path)
+    text = clean(data, where)
+    dialect = sniff(text, where)
+    if dialect.separator == " ":
+        text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", text))
+    names = _unique(dialect.headers, where)
+    text, notes = _without_torn_tail(text, dialect)
+    try:
+        table = csv.read_csv(
+            io.BytesIO(_body(text, dialect.skipped_rows)),
+            read_options=csv.ReadOptions(column_names=list(names), block_size=1 << 23),
+            parse_options=csv.ParseOptions(delimiter=dialect.separator),
+            convert_options=csv.ConvertOptions(
+                null_values=list(MISSING), strings_can_be_null=True, decimal_point=dialect.decimal
+            ),
+        )
+    except pa.ArrowInvalid as error:
+        raise BadInput(f"{where}: {_why(str(error), data, dialect)}") from error
+    if table.num_rows == 0:
+        raise BadInput(f"{where}: there is no row under the header; a recording needs at least 2")
+    units = dict(zip(names, dialect.units_row, strict=False))
+    return Table(
+        where=where,
+        headers=names,
+        rows=table.num_rows,
+        column=lambda header: _retyped(table.column(header), dialect.decimal),
+        locate=lambda row: _line_of(data, row, dialect),
+        has_header=dialect.has_header,
+        header_units={name: unit.strip("[]() ") for name, unit in units.items()},
+        notes=notes,
+    )
+
+
+def _without_torn_tail(text: bytes, dialect: Dialect) -> tuple[bytes, tuple[DataNote, ...]]:
+    """Leaves out a last line that was cut off while it was written: no line end, and cells missing."""
+    body, newline, tail = text.rpartition(b"\n")
+    if not newline or not tail.strip():
+        return text, ()
+    cells = split(tail.decode(errors="replace"), dialect.separator)
+    if len(cells) >= len(dialect.headers):
+        return text, ()
+    return body + newline, (DataNote("the last line is cut off", "left out", 1),)
+
+
+def _retyped(array: Any, decimal: str) -> Any:
+    """A text column whose numbers are written with a comma or padded with blanks, so that they can be parsed."""
+    import pyarrow as pa
+    from pyarrow import compute
+
+    if not pa.types.is_string(array.type):
+        return array
+    trimmed = compute.utf8_trim_whitespace(array)
+    return compute.replace_substring(trimmed, ",", ".") if decimal == "," else trimmed
+
+
+def _read_arrow(path: Path, parquet: bool) -> Table:
+    import pyarrow as pa
+    from pyarrow import feather
+    from pyarrow import parquet as pq
+
+    try:
+        table = pq.read_table(path) if parquet else feather.read_table(path)
+    except (pa.ArrowInvalid, OSError) as error:
+        kind = "Parquet" if parquet else "Arrow"
+        raise BadInput(f"{path}: a damaged {kind} file ({str(error).splitlines()[0]}); write it again") from error
+    if table.num_rows == 0:
+        raise BadInput(f"{path}: the table has no rows; a recording needs at least 2")
+    units = {each.name: (each.metadata or {}).get(b"unit", b"").decode() for each in table.schema}
+    return Table(
+        where=str(path),
+        headers=_unique(table.column_names, str(path)),
+        rows=table.num_rows,
+        column=table.column,
+        locate=lambda row: f"row {row + 1}",
+        header_units=units,
+    )
+
+
+def _seconds(array: Any) -> FloatArray:
+    """Dates or times of day as seconds, from the first row on for dates (float64 keeps microseconds then)."""
+    import pyarrow as pa
+
+    unit_s = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}.get(getattr(array.type, "unit", ""), 86_400.0)
+    wide = array.cast(pa.int32() if array.type.bit_width == 32 else pa.int64()).cast(pa.int64())
+    first = next((value.as_py() for value in wide if value.is_valid), 0) if not pa.types.is_time(array.type) else 0
+    counts = np.asarray(wide.to_numpy(zero_copy_only=False), dtype=np.float64) if wide.null_count else None
+    if counts is None:
+        return np.asarray((wide.to_numpy(zero_copy_only=False) - first) * unit_s, dtype=np.float64)
+    return np.asarray((counts - first) * unit_s, dtype=np.float64)
+
+
+def _body(text: bytes, skipped: int) -> bytes:
+    """The text below its first `skipped` non-blank lines."""
+    start = 0
+    while skipped > 0:
+        end = text.find(b"\n", start)
+        if end < 0:
+            return b"\n"
+        skipped -= bool(text[start:end].strip())
+        start = end + 1
+    return text[start:] or b"\n"
+
+
+def _unique(headers: Sequence[str], where: str) -> tuple[str, ...]:
+    """Empty headers get their number; two of the same name would make it a guess which is meant."""
+    named = [header or f"column {number + 1}" for number, header in enumerate(headers)]
+    twice = sorted({header for header in named if named.count(header) > 1})
+    if twice:
+        raise BadInput(f"{where}: two columns are called '{twice[0]}'; rename one of them")
+    return tuple(named)
+
+
+def _why(message: str, data: bytes, dialect: Dialect) -> str:
+    """The reader's complaint, with the line of the file in place of its own count."""
+    wrong = re.search(r"Row #(\d+): Expected (\d+) columns, got (\d+)", message)
+    expected = len(dialect.headers)
+    for number, line in _sample_lines(data, dialect):
+        cells = len(split(line, dialect.separator))
+        if cells != expected:
+            return f"line {number} of the file: {cells} cells where the header has {expected} ('{line[:60]}'); correct the line"
+    return f"row {wrong[1]}: {message}" if wrong else message
+
+
+def _line_of(data: bytes, row: int, dialect: Dialect) -> str:
+    for count, (number, _) in enumerate(_sample_lines(data, dialect)):
+        if count == row:
+            return f"row {row + 1} (line {number})"
+    return f"row {row + 1}"
+
+
+def _sample_lines(data: bytes, dialect: Dialect) -> list[tuple[int, str]]:
+    """Line number in the file and text of every row of samples; only used to explain an error."""
+    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8"
+    lines = data.decode(encoding, errors="replace").splitlines()
+    kept = [
+        (number + 1, line)
+        for number, line in enumerate(lines)
+        if line.strip() and not re.match(r"[ \t\ufeff]*(#|%|//)", line)
+    ]
+    return kept[dialect.skipped_rows :]
