@@ -22,6 +22,6 @@ class ValvePhysics(Protocol):
     def advance(self, to_time_s: float, command: float) -> Outputs:
         """Holds `command` from the last time up to `to_time_s` [s, monotonic] and returns what the sensors see then.
 
-        `command` is a pressure [psi], for the positioner variant a position [percent]. The first call sets the origin.
-        A time that is not later than the last leaves the valve where it is. Deterministic for the seed it was made with.
+        `command` is a pressure [psi], for the positioner variant a position [percent]. The first call sets the
+        origin. A time that is not later than the last leaves the valve where it is. Deterministic for its seed.
         """

@@ -1,0 +1,41 @@
+"""A pseudo-terminal has no baud rate: this gives it one, so that the limit of the wire is real."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from hal.clock import Clock
+from sim_device.framer import rtu_idle_s
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How long bytes take on a line of `baud`, with `bits_per_char` (10 for 8N1, 11 for 8E1 and 8N2)."""
+
+    baud: int
+    bits_per_char: int = 10
+    turnaround_s: float | None = None  # None: one t3.5, the shortest silence that ends a request
+
+    @property
+    def char_s(self) -> float:
+        return self.bits_per_char / self.baud
+
+    def reply_starts_s(self, request_arrived_s: float, request_bytes: int) -> float:
+        """When a slave may start to answer: the request has crossed the wire, and the line was silent after it."""
+        silence_s = rtu_idle_s(self.baud, self.bits_per_char) if self.turnaround_s is None else self.turnaround_s
+        return request_arrived_s + request_bytes * self.char_s + silence_s
+
+
+def emit(data: bytes, start_s: float, pace: Pace, clock: Clock, write: Callable[[bytes], None]) -> None:
+    """Writes byte k of `data` when its last bit would have crossed the wire: `start_s` + (k + 1) characters.
+
+    Deadlines are absolute, so a late wake-up delays no later byte.
+    """
+    sent = 0
+    while sent < len(data):
+        clock.sleep_until(start_s + (sent + 1) * pace.char_s)
+        due = int((clock.now_s() - start_s) / pace.char_s + 1e-9)
+        due = max(sent + 1, min(due, len(data)))
+        write(data[sent:due])
+        sent = due
