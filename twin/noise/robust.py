@@ -1,0 +1,121 @@
+"""Scale, correlation and whitening of a noise sample, steady against outliers, quantization and missing values.
+
+Arrays are float64 of shape (n,); a noise sample is a list of such pieces, each without gaps inside.
+Source: Huber, "Robust Statistics", 1981 (scale); Sokal, "Monte Carlo methods in statistical mechanics", 1989, section 3
+(window of the correlation time); Brockwell & Davis, "Time Series", 1991, section 5.2 (Durbin-Levinson).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from logs.recording import FloatArray
+
+CLIP = 5.0  # a Gaussian value passes this many sigma once in two million: what is beyond is no noise
+MAX_LAG = 200
+_MAX_ORDER = 25
+
+
+def robust_sigma(values: FloatArray) -> float:
+    """The standard deviation of the bulk: root mean square of what lies within 5 sigma of the median.
+
+    Not the median deviation itself, which jumps on a quantized signal and misses the wings of a wide one. NaN is
+    left out; an empty or constant sample has sigma 0.
+    """
+    sample = values[np.isfinite(values)]
+    if sample.size == 0:
+        return 0.0
+    deviation = np.abs(sample - np.median(sample))
+    # with more than half of the values on one step the median deviation is 0: the mean one still is not
+    sigma = 1.4826 * float(np.median(deviation)) or 1.2533 * float(np.mean(deviation))
+    for _ in range(8):
+        inside = deviation[deviation <= CLIP * sigma]
+        updated = float(np.sqrt(np.mean(np.square(inside)))) if inside.size else sigma
+        if abs(updated - sigma) <= 1e-9 * sigma:
+            break
+        sigma = updated
+    return sigma
+
+
+def clipped(values: FloatArray, sigma: float) -> FloatArray:
+    """The values about their median, held inside 5 sigma; NaN stays NaN."""
+    centred = values - np.nanmedian(values) if np.isfinite(values).any() else values
+    return np.clip(centred, -CLIP * sigma, CLIP * sigma) if sigma > 0 else centred
+
+
+def autocorrelation(
+    pieces: Sequence[FloatArray], max_lag: int = MAX_LAG, taken: FloatArray | None = None
+) -> FloatArray:
+    """Autocorrelation pooled over the pieces, lags 0..m with m <= `max_lag` and m < a third of the longest piece.
+
+    `taken[k]` is what a fit to the pieces took from the sum of products at lag k, in units of the variance (exact for
+    white noise); it is given back.
+    """
+    longest = max((piece.size for piece in pieces), default=0)
+    lags = min(max_lag, longest // 3)
+    total = np.zeros(lags + 1)
+    pairs = np.zeros(lags + 1)
+    for piece in pieces:
+        known = np.isfinite(piece)
+        filled = np.where(known, piece, 0.0)
+        weight = known.astype(np.float64)
+        for lag in range(min(lags, piece.size - 1) + 1):
+            stop = piece.size - lag
+            total[lag] += float(filled[:stop] @ filled[lag:])
+            pairs[lag] += float(weight[:stop] @ weight[lag:])
+    if lags < 0 or total[0] <= 0:
+        return np.ones(1)
+    covariance = total / np.maximum(pairs, 1.0)
+    rho = covariance / covariance[0]
+    if taken is not None:
+        rho[1:] += taken[1 : rho.size] / np.maximum(pairs[1:], 1.0)
+    return np.asarray(rho)
+
+
+def correlation_samples(rho: FloatArray) -> float:
+    """Integrated correlation time 1 + 2 sum rho [samples], at least 1: n values carry n / this many independent ones.
+
+    The sum stops where the window reaches five times the result, or where rho falls into its own noise.
+    """
+    total = 1.0
+    for lag in range(1, rho.size):
+        if rho[lag] <= 0.0 or lag > 5.0 * total:
+            break
+        total += 2.0 * float(rho[lag])
+    return max(total, 1.0)
+
+
+def autoregression(rho: FloatArray, samples: float) -> tuple[tuple[float, ...], float]:
+    """AR coefficients a (x[i] = sum a[j] x[i-1-j] + e) and the variance of e relative to that of x.
+
+    The order, at most 25, is the one of least Bayesian information criterion for `samples` values.
+    """
+    order_max = min(_MAX_ORDER, rho.size - 1)
+    coefficients = np.zeros(0)
+    variance, best, best_score = 1.0, (coefficients, 1.0), 0.0
+    for order in range(1, order_max + 1):
+        reflection = (rho[order] - coefficients @ rho[order - 1 : 0 : -1]) / variance
+        if not abs(reflection) < 0.9999:
+            break
+        coefficients = np.append(coefficients - reflection * coefficients[::-1], reflection)
+        variance *= 1.0 - reflection**2
+        score = samples * np.log(variance) + order * np.log(max(samples, 2.0))
+        if score < best_score:
+            best, best_score = (coefficients, variance), score
+    return tuple(float(value) for value in best[0]), float(best[1])
+
+
+def whiten(residual: FloatArray, ar: Sequence[float], sigma: float, innovation_sigma: float) -> FloatArray:
+    """The residual in units of its independent part: unit variance and no memory if it is this noise.
+
+    The first rows, and rows whose past is missing, cannot be predicted from it and are divided by `sigma` instead.
+    NaN stays NaN.
+    """
+    known = np.isfinite(residual)
+    filled = np.where(known, residual, 0.0)
+    taps = np.concatenate([[1.0], -np.asarray(ar, dtype=np.float64)])
+    whole = np.convolve(known.astype(np.float64), np.ones(taps.size))[: residual.size] >= taps.size - 0.5
+    white = np.convolve(filled, taps)[: residual.size] / innovation_sigma
+    return np.where(known, np.where(whole, white, filled / sigma), np.nan)
