@@ -1,0 +1,37 @@
+"""The original pilot positioner around the thesis's valve; command in percent of stroke."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from sim_device.physics.imperfection import Imperfection
+from sim_device.physics.parameters import split
+from sim_device.valve import ValvePhysics
+
+
+def make(
+    seed: int,
+    *,
+    noise: float = 1.0,
+    effects: Mapping[str, float] | None = None,
+    pilot: Mapping[str, float] | None = None,
+    **numbers: float,
+) -> ValvePhysics:
+    """A valve under its positioner, with `effects` of the valve, `pilot` numbers, or other design numbers.
+
+    Raises: `BadInput` for names, forms or sizes that this plant does not have; `TypeError` for an unknown pilot number.
+    """
+    from sim_device.physics.positioner.plant import Pilot, PositionerValve
+    from sim_device.physics.thesis.plant import checked_design
+
+    rest, design = split(effects or {}, checked_design(numbers))
+    settings: dict[str, Any] = dict(pilot or {})
+    return PositionerValve(seed, Pilot(**settings), design, rest, noise)
+
+
+def imperfections() -> tuple[Imperfection, ...]:
+    """Everything that can be wrong behind the positioner's air: the valve and the sensor."""
+    from sim_device.physics.thesis.plant import IMPERFECTIONS
+
+    return tuple(item for item in IMPERFECTIONS if item.stage != "ep")

@@ -1,0 +1,60 @@
+"""The original pilot positioner in cascade around the valve that the thesis met first (section 1.2).
+
+Nothing here scripts an outcome. Full stroke is missed because the span screw is off; the steady error is the arc of
+the feedback lever plus the pilot's deadband; the hunting is a relay that must carry the pressure across the valve's
+deadband, arrives with speed, and finds the stem still coasting.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from sim_device.physics.imperfection import choose
+from sim_device.physics.thesis.plant import IMPERFECTIONS
+from sim_device.physics.thesis.record import DesignNumbers, settings, start_state
+from sim_device.valve import Outputs
+
+
+@dataclass(frozen=True, slots=True)
+class Pilot:
+    """The positioner's own numbers: pressures in psi, times in s, `opens` and `closes` as shares of the stroke."""
+
+    span: float = 0.97
+    lever_rad: float = 0.72
+    arm_play: float = 0.004  # in, play of the feedback arm's pin
+    opens: float = 0.012
+    closes: float = 0.004
+    supply: float = 20.0
+    fill_tau: float = 25.0
+    exhaust_tau: float = 20.0
+    leak: float = 0.002  # psi/s through the pilot's seat while it holds
+    seen_tau: float = 0.2
+
+
+class PositionerValve:
+    """Command in percent of stroke. Deterministic for its seed."""
+
+    def __init__(
+        self, seed: int, pilot: Pilot, design: DesignNumbers, effects: Mapping[str, float], noise: float
+    ) -> None:
+        self.pilot = pilot
+        self.design = design
+        numbers = asdict(pilot)
+        self._pilot_settings = np.array([tuple(numbers.values())], dtype=[(name, "f8") for name in numbers])
+        self._pilot_state = np.zeros(1, dtype=[("arm", "f8"), ("seen", "f8"), ("valve", "f8")])
+        self.settings = settings(IMPERFECTIONS, design, choose(IMPERFECTIONS, effects), noise)
+        self.state = start_state(seed)
+        self._now_s: float | None = None
+
+    def advance(self, to_time_s: float, command: float) -> Outputs:
+        from sim_device.physics.positioner.loop import advance
+
+        duration_s = 0.0 if self._now_s is None else max(to_time_s - self._now_s, 0.0)
+        self._now_s = to_time_s if self._now_s is None else max(to_time_s, self._now_s)
+        pressure_psi, position_in = advance(
+            self.settings, self.state, self._pilot_settings, self._pilot_state, float(command), duration_s
+        )
+        return Outputs(pressure_psi, position_in, self.pilot.supply, 22.0)

@@ -1,0 +1,126 @@
+"""The spring and the diaphragm: how far a pressure above the friction moves the plate."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sim_device.physics.chance import PHASE, uniform
+from sim_device.physics.imperfection import Imperfection
+from sim_device.physics.jit import compiled
+
+IMPERFECTIONS = (
+    Imperfection(
+        "spring_asymmetry",
+        "actuator",
+        "1",
+        (0.03, 0.1, 0.3),
+        "Compliance is (1 + size/2) k closing and (1 - size/2) k opening, about the curves' feet or mid-travel.",
+        forms=("foot", "pivot"),
+        limit=0.8,
+        signed=True,
+    ),
+    Imperfection(
+        "nonlinear_spring",
+        "actuator",
+        "1",
+        (0.008, 0.025, 0.08),
+        "The stroke departs from the straight line by up to `size` of travel: a bulge, an S, or the loss of effective "
+        "diaphragm area over the stroke.",
+        forms=("bulge", "s", "area"),
+        limit=0.3,
+        signed=True,
+    ),
+    Imperfection(
+        "flow_force",
+        "actuator",
+        "psi",
+        (0.05, 0.15, 0.5),
+        "Fluid pushes the plug open with up to `size`: in proportion to the opening, or mostly near the seat.",
+        forms=("linear", "seat"),
+        limit=4.0,
+        signed=True,
+    ),
+    Imperfection(
+        "reduced_travel",
+        "actuator",
+        "in",
+        (0.008, 0.025, 0.08),
+        "The closed stop (or the open one) stands `size` inside the design travel.",
+        forms=("closed", "open"),
+        limit=0.4,
+    ),
+    Imperfection(
+        "thermal_spring",
+        "actuator",
+        "1",
+        (0.02, 0.06, 0.2),
+        "The spring rate breathes by `size` with the room's heating, every 140 s.",
+        limit=0.5,
+        outsider=True,
+    ),
+    Imperfection(
+        "snap_region",
+        "actuator",
+        "psi",
+        (0.15, 0.4, 1.0),
+        "A buckled diaphragm: around mid-travel the spring force falls by `size`, so the stem snaps through.",
+        limit=3.0,
+        outsider=True,
+    ),
+    Imperfection(
+        "diaphragm_hole",
+        "actuator",
+        "psi",
+        (0.06, 0.2, 0.7),
+        "A torn diaphragm leaks more when stretched: the air that pushes is up to `size` below the reading.",
+        limit=4.0,
+        outsider=True,
+    ),
+)
+
+_HEATING_PERIOD_S = 140.0
+
+
+@compiled
+def stroke(q: Any, s: Any, excess: float, closing: bool) -> float:
+    """Where the plate rests when the pressure exceeds spring preload and friction by `excess` [psi]; in."""
+    k = q.compliance
+    if q.thermal_spring > 0.0:
+        k *= 1.0 + q.thermal_spring * math.sin(2.0 * math.pi * (s.time / _HEATING_PERIOD_S + uniform(s.seed, PHASE, 2)))
+    turn = 1.0 + (0.5 if closing else -0.5) * q.spring_asymmetry
+    if q.spring_asymmetry_form == 0:
+        x = k * turn * excess
+    else:
+        x = 0.5 * q.travel + k * turn * (excess - 0.5 * q.travel / q.compliance)
+    if q.nonlinear_spring != 0.0:
+        z = min(max(x / q.travel, 0.0), 1.0)
+        if q.nonlinear_spring_form == 0:
+            x += q.nonlinear_spring * q.travel * 4.0 * z * (1.0 - z)
+        elif q.nonlinear_spring_form == 1:
+            x += q.nonlinear_spring * q.travel * math.sin(2.0 * math.pi * z)
+    return float(x)
+
+
+@compiled
+def push(q: Any, p: float, w: float) -> float:
+    """Pressure that is lost to forces which depend on the stroke `w` [psi]; positive opens the valve."""
+    share = w / q.travel
+    opening = 1.0 - share
+    total = 0.0
+    if q.flow_force_form == 0:
+        total += q.flow_force * opening
+    else:
+        total += q.flow_force * 4.0 * share * share * opening * 1.6875
+    if q.nonlinear_spring_form == 2:
+        total += 4.0 * q.nonlinear_spring * p * share * 0.25
+    total -= q.snap_region / (1.0 + math.exp(-(share - 0.5) / 0.03))
+    return float(total + q.diaphragm_hole * share * share)
+
+
+@compiled
+def stops(q: Any) -> tuple[float, float]:
+    """The open and the closed end stop [in]."""
+    if q.reduced_travel_form == 0:
+        return 0.0, q.travel - q.reduced_travel
+    return float(q.reduced_travel), float(q.travel)
