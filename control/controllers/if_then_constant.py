@@ -1,4 +1,4 @@
-"""If-Then control with a constant threshold pressure, equation (3-1): bounces where the curves are near the threshold."""
+"""If-Then control with a constant threshold pressure (3-1): bounces where the curves come near the threshold."""
 
 from __future__ import annotations
 

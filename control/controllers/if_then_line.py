@@ -10,7 +10,7 @@ from control.if_then import Decision, crossing_psi, threshold_line_psi
 
 @dataclass(frozen=True)
 class IfThenLine(Law[Decision]):
-    """P_signal = P_measurement (+- deadband) + g e, every `update_s` [s], with the threshold from the measured position.
+    """P_signal = P_measurement (+- deadband) + g e, every `update_s` [s]; the threshold follows the measured position.
 
     The settings are those of `if_then_constant`, without the constant.
     """

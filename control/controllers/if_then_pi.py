@@ -1,4 +1,4 @@
-"""If-Then control with the threshold line, and an integral part with anti-windup: figure 3-11, the thesis's last word."""
+"""If-Then control with threshold line, integral part and anti-windup: figure 3-11, the last word of the thesis."""
 
 from __future__ import annotations
 
