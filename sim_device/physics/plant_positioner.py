@@ -25,7 +25,7 @@ def make(
     from sim_device.physics.positioner.plant import Pilot, PositionerValve
     from sim_device.physics.thesis.plant import checked_design
 
-    rest, design = split(effects or {}, checked_design(numbers))
+    rest, design = split({"friction_in_motion": 1.0, **(effects or {})}, checked_design(numbers))
     settings: dict[str, Any] = dict(pilot or {})
     return PositionerValve(seed, Pilot(**settings), design, rest, noise)
 

@@ -15,11 +15,8 @@ FILL, HOLD, EXHAUST = 1.0, 0.0, -1.0
 
 @compiled
 def lever(b: Any, stem: float, travel: float) -> float:
-    """The stroke as the positioner sees it (0 to 1): a lever that turns, so an arc instead of a straight line.
-
-    The span screw makes it read 1 already at `span` of the true travel.
-    """
-    share = stem / (travel * b.span)
+    """The stroke as the positioner sees it (0 to 1): a lever that turns, so an arc instead of a straight line."""
+    share = stem / travel
     return float(0.5 + 0.5 * math.atan((2.0 * share - 1.0) * math.tan(b.lever_rad)) / b.lever_rad)
 
 

@@ -1,8 +1,9 @@
 """The original pilot positioner in cascade around the valve that the thesis met first (section 1.2).
 
-Nothing here scripts an outcome. Full stroke is missed because the span screw is off; the steady error is the arc of
-the feedback lever plus the pilot's deadband; the hunting is a relay that must carry the pressure across the valve's
-deadband, arrives with speed, and finds the stem still coasting.
+Nothing here scripts an outcome. Full stroke is missed because the pilot's air supply ends at 11.65 psi, where the
+closing curve has reached 97 % (the valve needs 11.74); the steady error is the arc of the feedback lever; the hunting
+is a relay that must carry the pressure across the valve's deadband and finds the stem still moving when it stops.
+The packing's friction acts on the moving stem (`friction_in_motion` = 1 unless the effects say otherwise).
 """
 
 from __future__ import annotations
@@ -22,14 +23,13 @@ from sim_device.valve import Outputs
 class Pilot:
     """The positioner's own numbers: pressures in psi, times in s, `opens` and `closes` as shares of the stroke."""
 
-    span: float = 0.97
-    lever_rad: float = 0.72
+    lever_rad: float = 0.62  # half of the angle that the feedback lever turns over the stroke
     arm_play: float = 0.004  # in, play of the feedback arm's pin
     opens: float = 0.012
     closes: float = 0.004
-    supply: float = 20.0
-    fill_tau: float = 25.0
-    exhaust_tau: float = 20.0
+    supply: float = 11.65
+    fill_tau: float = 8.0
+    exhaust_tau: float = 40.0
     leak: float = 0.002  # psi/s through the pilot's seat while it holds
     seen_tau: float = 0.2
 

@@ -41,6 +41,9 @@ def _bounds(q: Any, s: Any, p: float, w: float, extra: float) -> tuple[float, fl
     wide = max((half + extra) * share, 0.0)
     net = p - middle - push(q, p, w)
     low_stop, high_stop = stops(q)
+    # the part of the friction that acts on the stem lets the plate strain past the stops by that much
+    strain = half * q.friction_in_motion * q.compliance
+    low_stop, high_stop = low_stop - strain, high_stop + strain
     low = min(max(stroke(q, s, net - wide, True), low_stop), high_stop)
     high = min(max(stroke(q, s, net + wide, False), low_stop), high_stop)
     return low, max(low, high)
