@@ -47,7 +47,7 @@ class WireFaults:
         return self.local_echo or any(getattr(self, name) > 0.0 for name in FRACTIONS)
 
 
-FRACTIONS = tuple(item.name for item in fields(WireFaults) if item.default == 0.0)
+FRACTIONS = tuple(item.name for item in fields(WireFaults) if item.default == 0.0 and isinstance(item.default, float))
 
 
 @dataclass(frozen=True)

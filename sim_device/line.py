@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from sim_device.crc import sealed
 from sim_device.diagnostics import Diagnostics
-from sim_device.pdu import Server
+from sim_device.pdu import DEVICE_FAILURE, Server
 
 BROADCAST = 0
 _BROADCAST_FUNCTIONS = frozenset((5, 6, 15, 16, 22))  # only writes make sense when nobody answers
@@ -65,14 +65,22 @@ class Line:
         unit = self._units.get(address)
         if unit is None:
             return None
-        unit.heard()
         unit.diagnostics.addressed(answered=True)
-        return unit.server.answer(pdu)
+        return _respond(unit, pdu)
 
     def _broadcast(self, pdu: bytes) -> None:
         if pdu[0] not in _BROADCAST_FUNCTIONS:
             return
         for unit in self._units.values():
-            unit.heard()
             unit.diagnostics.addressed(answered=False)
-            unit.server.answer(pdu)
+            _respond(unit, pdu)
+
+
+def _respond(unit: Unit, pdu: bytes) -> bytes:
+    """A valve whose physics cannot go on answers exception 4; the line stays alive."""
+    try:
+        unit.heard()
+    except (ArithmeticError, ValueError):
+        unit.diagnostics.refused(DEVICE_FAILURE)
+        return bytes((pdu[0] | 0x80, DEVICE_FAILURE))
+    return unit.server.answer(pdu)

@@ -1,0 +1,120 @@
+"""Run the virtual Modbus device on a pseudo-terminal or a socket, until stopped."""
+
+from __future__ import annotations
+
+import json
+import signal
+import threading
+from pathlib import Path
+from types import FrameType
+from typing import TYPE_CHECKING
+
+import click
+
+from hal.errors import BadInput
+
+if TYPE_CHECKING:
+    from hal.profile import Profile
+    from sim_device.server import VirtualDevice
+    from sim_device.valve import ValvePhysics
+
+
+@click.command()
+@click.option("--port-link", type=click.Path(path_type=Path), help="Stable name for the pseudo-terminal.")
+@click.option("--tcp", metavar="HOST:PORT", help="Listen with Modbus TCP, or with rtu+tcp://HOST:PORT for RTU frames.")
+@click.option("--profile", "profile_name", default="virtual", show_default=True, help="Profile name or .toml file.")
+@click.option("--physics", default="thesis", show_default=True, help="The valve behind the registers.")
+@click.option("--effect", "effects", multiple=True, metavar="NAME=SIZE", help="Something wrong with the valve.")
+@click.option("--time", "time_kind", type=click.Choice(["real", "stepped"]), default="real", show_default=True,
+              help="Stepped: virtual time, moved by the master through the simulation registers.")  # fmt: skip
+@click.option("--fault", "faults", multiple=True, metavar="NAME=FRACTION",
+              help="Bad line: late=0.05:0.9-3.5, noise_before=0.05, bit_flip=0.03, drop, truncate, wrong_unit, "
+              "wrong_function, exception=0.01:6x20, noise_after, local_echo.")  # fmt: skip
+@click.option("--fault-timeout", type=click.FloatRange(min=0, min_open=True), default=0.1, show_default=True,
+              help="The timeout [s] that late replies are measured in.")  # fmt: skip
+@click.option("--pace", type=click.IntRange(min=300), metavar="BAUD", help="Let every byte take its time on the wire.")
+@click.option("--refresh", type=click.FloatRange(min=0), default=0.0, show_default=True,
+              help="Conversion period of the DAQ [s]; 0 converts for every request.")  # fmt: skip
+@click.option("--seed", type=int, default=0, show_default=True, help="Of the sensor noise and of the faults.")
+@click.option("--json", "as_json", is_flag=True, help="Print where it listens as one line of JSON.")
+def command(
+    port_link: Path | None,
+    tcp: str | None,
+    profile_name: str,
+    physics: str,
+    effects: tuple[str, ...],
+    time_kind: str,
+    faults: tuple[str, ...],
+    fault_timeout: float,
+    pace: int | None,
+    refresh: float,
+    seed: int,
+    as_json: bool,
+) -> None:
+    """Run the virtual Modbus device on a pseudo-terminal or a socket, until stopped.
+
+    It prints the port that a master opens, and runs until Ctrl-C or SIGTERM; then it removes its link. The registers
+    lie where the profile puts them (docs/register-map.md), so any profile can be emulated.
+    """
+    from hal.clock import RealClock, SteppedClock
+    from hal.profile import load_profile
+    from sim_device.device import Options
+    from sim_device.faults import parse_faults
+    from sim_device.server import VirtualDevice
+
+    profile = load_profile(profile_name)
+    stepped = time_kind == "stepped"
+    device = VirtualDevice(
+        profile,
+        _valve(physics, effects, seed),
+        SteppedClock() if stepped else RealClock(),
+        link=port_link,
+        tcp=tcp,
+        faults=parse_faults(faults, seed=seed, timeout_s=fault_timeout),
+        pace_baud=pace,
+        options=Options(refresh_s=refresh, simulation_block=stepped),
+    )
+    _serve(device, profile, physics, as_json)
+
+
+def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
+    """Raises: `BadInput` for a plant, an effect or a size that does not exist."""
+    from sim_device.physics.catalog import make_physics
+
+    sizes: dict[str, float] = {}
+    for text in effects:
+        name, _, size = text.partition("=")
+        try:
+            sizes[name] = float(size)
+        except ValueError:
+            raise BadInput(f"effect '{text}' has no size; write NAME=NUMBER, for example stiction=0.4") from None
+    return make_physics(physics, seed, **({"effects": sizes} if sizes else {}))
+
+
+def _serve(device: VirtualDevice, profile: Profile, physics: str, as_json: bool) -> None:
+    stop = threading.Event()
+
+    def end(_number: int, _frame: FrameType | None) -> None:
+        stop.set()
+
+    before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGHUP)}
+    try:
+        with device:
+            _announce(device, profile, physics, as_json)
+            while not stop.wait(timeout=0.5):  # wakes, so that a signal is seen on every platform
+                pass
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _announce(device: VirtualDevice, profile: Profile, physics: str, as_json: bool) -> None:
+    units = sorted(device.units)
+    if as_json:
+        place = {"port": device.port, "tcp": device.tcp_url or None, "units": units}
+        click.echo(json.dumps(place | {"profile": profile.name, "physics": physics}))
+    else:
+        shown = " and ".join(dict.fromkeys(item for item in (device.port, device.tcp_url) if item))
+        click.echo(f"virtual valve ({physics}) as '{profile.name}', unit {', '.join(map(str, units))}, on {shown}")
+        click.echo(f"try: lostmotion check --port {device.port} --profile {profile.name}    (Ctrl-C stops it)")
+    click.get_text_stream("stdout").flush()
