@@ -19,7 +19,16 @@ from logs.recording import FloatArray
 from twin.slots import GRID, neutral_ep, neutral_sensor, neutral_valve
 
 Stage = Literal["ep", "actuator", "sensor"]
-Kind = Literal["pressure", "position", "time", "fraction", "position_rate", "pressure_rate", "pressure_per_position"]
+Kind = Literal[
+    "pressure",
+    "position",
+    "time",
+    "fraction",
+    "position_rate",
+    "pressure_rate",
+    "pressure_per_position",
+    "time_per_pressure",
+]
 Evidence = Literal["trajectory", "events"]
 
 
@@ -63,6 +72,7 @@ class Scales:
             "position_rate": self.position / self.time,
             "pressure_rate": self.pressure / self.time,
             "pressure_per_position": self.pressure / self.position,
+            "time_per_pressure": self.time / self.pressure,
         }[kind]
 
     def unit(self, kind: Kind) -> str:
@@ -75,6 +85,7 @@ class Scales:
             "position_rate": f"{self.position_unit}/s",
             "pressure_rate": f"{self.pressure_unit}/s",
             "pressure_per_position": f"{self.pressure_unit}/{self.position_unit}",
+            "time_per_pressure": f"s/{self.pressure_unit}",
         }[kind]
 
 

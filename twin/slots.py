@@ -45,7 +45,16 @@ V_CREEP2 = 17
 V_CREEP2_TAU_S = 18
 V_STEP_TIME_S = 19  # when the half deadband changes by V_STEP [s]
 V_STEP = 20
-V_COUNT = 21
+V_OUTER = 21  # half width of a play in pressure before the friction [pressure]
+V_OUTER_CENTRE = 22  # pressure in the middle of that play at position 0 [pressure]
+V_OUTER_SLOPE = 23  # and how it grows with position [pressure/position]
+V_FORCE_CREEP = 24  # share of the force that creeps, before the play [-]
+V_FORCE_CREEP_TAU_S = 25
+V_HARD_LOW = 26  # stops that hold the stem only, not the play output [position]
+V_HARD_HIGH = 27
+V_STRIBECK = 28  # friction at rest above friction in motion, falling with speed [pressure]
+V_STRIBECK_SPEED = 29  # speed at which 1/e of it is left [position/s]
+V_COUNT = 30
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -83,7 +92,8 @@ def neutral_valve() -> FloatArray:
     """Valve coefficients without any effect; curves, lags, rates and stops are set by the design."""
     c = np.zeros(V_COUNT)
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
-    c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S]] = 1.0
+    c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_STRIBECK_SPEED]] = 1.0
+    c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
     return c
 
 

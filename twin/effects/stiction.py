@@ -25,6 +25,7 @@ _STICK_SPEED = Parameter(
     starts=(3e-4, 2e-3, 8e-3),
     scale=4e-3,
     doc="below this speed the stem sticks again",
+    neutral=2e-3,
     smooth=False,
     size=False,
 )

@@ -1,0 +1,44 @@
+"""The motion is of higher order than one lag."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_TAU_AFTER_S, V_TAU_BEFORE_S
+
+
+def _lag(doc: str) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="lag",
+            kind="time",
+            lower=0.0,
+            upper=8.0,
+            starts=(0.06, 0.25, 0.9),
+            scale=0.5,
+            doc=doc,
+        ),
+    )
+
+
+def _after(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_TAU_AFTER_S] = values[0]
+
+
+def _before(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_TAU_BEFORE_S] = values[0]
+
+
+EFFECT = Effect(
+    name="additional_lag",
+    stage="actuator",
+    claim="The motion is of higher order than one lag.",
+    equations="dv/dt = (w - v) / lag, dx/dt = (v - x) / tau; before: dq/dt = (p - q) / lag and w = play(q)",
+    source="Seborg, Edgar, Mellichamp, Process Dynamics and Control, 2nd ed. (Wiley 2004), ch. 6",
+    forms=(
+        Form("after_play", _lag("second time constant, between play and stem"), _after),
+        Form("before_play", _lag("time constant between measured pressure and force"), _before),
+    ),
+    twins=("sensor_lag", "dead_time"),
+)

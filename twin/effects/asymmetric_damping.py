@@ -1,0 +1,49 @@
+"""Different time constants closing and opening."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_RATE_CLOSE, V_RATE_OPEN, V_TAU_CLOSE_S, V_TAU_OPEN_S
+
+
+def _parameter(name: str, doc: str) -> Parameter:
+    return Parameter(
+        name=name,
+        kind="fraction",
+        lower=-0.9,
+        upper=0.9,
+        starts=(-0.2, -0.02, 0.02, 0.2),
+        scale=0.2,
+        doc=doc,
+    )
+
+
+def _two_lags(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_TAU_CLOSE_S] *= 1.0 + values[0]
+    c.valve[V_TAU_OPEN_S] *= 1.0 - values[0]
+
+
+def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
+    # The highest speed follows from the same damping: twice the time constant, half the speed.
+    _two_lags(c, values)
+    c.valve[V_RATE_CLOSE] /= 1.0 + values[0]
+    c.valve[V_RATE_OPEN] /= 1.0 - values[0]
+
+
+_ASYMMETRY = _parameter(
+    "asymmetry", "half the difference of the time constants over their mean, + = closes more slowly"
+)
+
+EFFECT = Effect(
+    name="asymmetric_damping",
+    stage="actuator",
+    claim="The time constants closing and opening differ.",
+    equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening",
+    source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967)",
+    forms=(
+        Form("two_lags", (_ASYMMETRY,), _two_lags),
+        Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
+    ),
+)

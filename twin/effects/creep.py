@@ -1,0 +1,66 @@
+"""A slow tail after the fast response: diaphragm and packing give way gradually."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_CREEP1, V_CREEP1_TAU_S, V_CREEP2, V_CREEP2_TAU_S, V_FORCE_CREEP, V_FORCE_CREEP_TAU_S
+
+#: The second time constant of the two-tail form is this many times the first.
+RATIO = 6.0
+
+_SHARE = Parameter(
+    name="share",
+    kind="fraction",
+    lower=0.0,
+    upper=0.7,
+    starts=(0.01, 0.06, 0.2),
+    scale=0.1,
+    doc="share of the motion that comes late",
+)
+
+
+def _tail(lower: float, starts: tuple[float, ...], doc: str) -> Parameter:
+    return Parameter(
+        name="tail",
+        kind="time",
+        lower=lower,
+        upper=900.0,
+        starts=starts,
+        scale=30.0,
+        doc=doc,
+        neutral=30.0,
+        size=False,
+    )
+
+
+def _one_tail(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_CREEP1] = values[0]
+    c.valve[V_CREEP1_TAU_S] = values[1]
+
+
+def _two_tails(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[[V_CREEP1, V_CREEP2]] = 0.5 * values[0]
+    c.valve[V_CREEP1_TAU_S] = values[1]
+    c.valve[V_CREEP2_TAU_S] = RATIO * values[1]
+
+
+def _force(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_FORCE_CREEP] = values[0]
+    c.valve[V_FORCE_CREEP_TAU_S] = values[1]
+
+
+EFFECT = Effect(
+    name="creep",
+    stage="actuator",
+    claim="A slow tail follows the fast response.",
+    equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
+    "6 tail; force: the same on the pressure before the play",
+    source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
+    forms=(
+        Form("one_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail")), _one_tail),
+        Form("two_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _two_tails),
+        Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
+    ),
+)

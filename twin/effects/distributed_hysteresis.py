@@ -1,0 +1,77 @@
+"""A spread of play widths: inner reversals move the stem gradually (Prandtl-Ishlinskii)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import PLAYS
+
+
+def _spread(doc: str) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="spread",
+            kind="pressure",
+            lower=0.0,
+            upper=1.48,
+            starts=(0.08, 0.3, 0.9),
+            scale=0.4,
+            doc=doc,
+        ),
+    )
+
+
+_SOFT = Parameter(
+    name="soft_share",
+    kind="fraction",
+    lower=0.0,
+    upper=0.7,
+    starts=(0.02, 0.1, 0.35),
+    scale=0.15,
+    doc="share of the elements whose widths spread from none to the full deadband",
+)
+
+_QUANTILES = (np.arange(PLAYS) + 0.5) / PLAYS
+
+
+def _uniform(c: Coefficients, values: Sequence[float]) -> None:
+    reach = min(values[0], 0.5 * c.design.deadband)
+    _set(c, reach * (2.0 * _QUANTILES - 1.0), np.full(PLAYS, 1.0 / PLAYS))
+
+
+def _exponential(c: Coefficients, values: Sequence[float]) -> None:
+    tail = -np.log1p(-_QUANTILES)
+    reach = min(values[0], 0.5 * c.design.deadband)
+    _set(c, reach * (tail / tail.mean() - 1.0), np.full(PLAYS, 1.0 / PLAYS))
+
+
+def _partly_soft(c: Coefficients, values: Sequence[float]) -> None:
+    half = 0.5 * c.design.deadband
+    soft = np.append(values[0] / (PLAYS - 1) * np.ones(PLAYS - 1), 1.0 - values[0])
+    narrow = -half * (np.arange(PLAYS - 1) + 0.5) / (PLAYS - 1)
+    wide = 0.5 * half * values[0] / (1.0 - values[0])
+    _set(c, np.append(narrow, wide), soft)
+
+
+def _set(c: Coefficients, spreads: np.ndarray, weights: np.ndarray) -> None:
+    """Spreads about the design's half deadband, weights that sum to 1; the mean width does not change."""
+    c.spreads = np.ascontiguousarray(spreads, dtype=np.float64)
+    c.weights = np.ascontiguousarray(weights, dtype=np.float64)
+
+
+EFFECT = Effect(
+    name="distributed_hysteresis",
+    stage="actuator",
+    claim="The hysteresis is a spread of play widths: inner reversals move the stem gradually.",
+    equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0",
+    source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
+    forms=(
+        Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
+        Form("partly_soft", (_SOFT,), _partly_soft),
+        Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
+    ),
+    twins=("stiction", "creep"),
+)

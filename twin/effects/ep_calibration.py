@@ -1,0 +1,50 @@
+"""The converter's pressure is off by a static gain error, a zero error, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import EP_GAIN, EP_ZERO
+
+_GAIN = Parameter(
+    name="gain",
+    kind="fraction",
+    lower=-0.3,
+    upper=0.3,
+    starts=(-0.004, 0.004),
+    scale=0.03,
+    doc="relative gain error, 0 = right",
+)
+_ZERO = Parameter(
+    name="zero",
+    kind="pressure",
+    lower=-2.0,
+    upper=2.0,
+    starts=(-0.04, 0.04),
+    scale=0.3,
+    doc="pressure above the command at zero command",
+)
+
+
+def _both(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_GAIN] = 1.0 + values[0]
+    c.ep[EP_ZERO] = values[1]
+
+
+def _gain(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_GAIN] = 1.0 + values[0]
+
+
+def _zero(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_ZERO] = values[0]
+
+
+EFFECT = Effect(
+    name="ep_calibration",
+    stage="ep",
+    claim="Pressure settles away from the command: a gain error, a zero error, or both.",
+    equations="dp/dt = ((1 + gain) u + zero - p) / tau",
+    source="IEC 61298-2, Process measurement and control devices, part 2: tests under reference conditions",
+    forms=(Form("zero", (_ZERO,), _zero), Form("gain", (_GAIN,), _gain), Form("gain_and_zero", (_GAIN, _ZERO), _both)),
+)

@@ -1,0 +1,47 @@
+"""The converter ignores command changes inside a band: pilot overlap, or a small hysteresis of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Apply, Coefficients, Effect, Form, Parameter
+from twin.slots import EP_BAND, EP_BAND_MODE
+
+
+def _band(doc: str, smooth: bool) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="band",
+            kind="pressure",
+            lower=0.0,
+            upper=1.5,
+            starts=(0.015, 0.05, 0.15, 0.4),
+            scale=0.15,
+            doc=doc,
+            smooth=smooth,
+        ),
+    )
+
+
+def _mode(mode: float) -> Apply:
+    def apply(c: Coefficients, values: Sequence[float]) -> None:
+        c.ep[EP_BAND] = values[0]
+        c.ep[EP_BAND_MODE] = mode if values[0] > 0.0 else 0.0
+
+    return apply
+
+
+EFFECT = Effect(
+    name="ep_deadband",
+    stage="ep",
+    claim="The converter ignores command changes inside a band.",
+    equations="hold: the goal v follows u when |u - v| > band; play: v = max(u - band, min(u + band, v)); "
+    "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full)",
+    source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (overlapped valves); IEC 61298-2 (dead band)",
+    forms=(
+        Form("hold", _band("command change from the last accepted command that is still ignored", False), _mode(1.0)),
+        Form("play", _band("half width of the hysteresis between command and goal", True), _mode(2.0)),
+        Form("overlap", _band("pressure error at which the pilot begins to open", True), _mode(3.0)),
+        Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
+    ),
+)

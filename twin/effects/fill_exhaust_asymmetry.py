@@ -1,0 +1,41 @@
+"""Pressure rises and falls with different time constants: filling and exhausting pass different restrictions."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import EP_TAU_FALL_S, EP_TAU_RISE_S
+
+
+def _apply(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_TAU_RISE_S] *= 1.0 + values[0]
+    c.ep[EP_TAU_FALL_S] *= 1.0 - values[0]
+
+
+EFFECT = Effect(
+    name="fill_exhaust_asymmetry",
+    stage="ep",
+    claim="Pressure rises and falls with different time constants.",
+    equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling",
+    source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
+    forms=(
+        Form(
+            "two_lags",
+            (
+                # Parameterised about the mean of the two, so that re-tuning the converter lag cannot imitate it.
+                Parameter(
+                    name="asymmetry",
+                    kind="fraction",
+                    lower=-0.95,
+                    upper=0.95,
+                    starts=(-0.4, -0.05, 0.05, 0.4),
+                    scale=0.3,
+                    doc="half the difference of the two time constants over their mean, positive = rises more slowly",
+                ),
+            ),
+            _apply,
+        ),
+    ),
+    twins=("ep_rate_limit",),
+)

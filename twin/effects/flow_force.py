@@ -1,0 +1,64 @@
+"""Fluid through the valve pushes the plug, depending on opening."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.shapes import detrended
+
+#: Opening (fraction of travel) at which the force near the seat peaks.
+PEAK = 0.12
+
+
+def _force(doc: str) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="force",
+            kind="pressure",
+            lower=-3.0,
+            upper=3.0,
+            starts=(-0.3, -0.05, 0.05, 0.3),
+            scale=0.3,
+            doc=doc,
+        ),
+    )
+
+
+def _push(c: Coefficients, shape: FloatArray) -> None:
+    # Without its straight line: that part re-tunes offset and compliance and says nothing about the fluid.
+    shift = detrended(shape, c.xi)
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+def _throttling(c: Coefficients, values: Sequence[float]) -> None:
+    _push(c, values[0] * np.square(c.xi))
+
+
+def _near_seat(c: Coefficients, values: Sequence[float]) -> None:
+    opening = (1.0 - c.xi) / PEAK
+    _push(c, values[0] * opening * np.exp(1.0 - opening))
+
+
+def _at_seat(c: Coefficients, values: Sequence[float]) -> None:
+    _push(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
+
+
+EFFECT = Effect(
+    name="flow_force",
+    stage="actuator",
+    claim="Fluid through the valve pushes the plug, depending on opening.",
+    equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
+    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12)",
+    source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (flow forces); Borden (ed.), Control Valves (ISA 1998)",
+    forms=(
+        Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
+        Form("near_seat", _force("peak of the force at 12 % opening, as pressure"), _near_seat),
+        Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
+    ),
+    twins=("nonlinear_spring", "lvdt_nonlinearity"),
+)

@@ -1,0 +1,93 @@
+"""The deadband changes with time: warm-up, wear, or one sudden change."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_STEP, V_STEP_TIME_S, V_WEAR
+
+_RATE = Parameter(
+    name="rate",
+    kind="pressure_rate",
+    lower=-0.02,
+    upper=0.02,
+    starts=(-1e-4, 1e-4),
+    scale=1e-3,
+    doc="growth of the half deadband per second",
+)
+_CHANGE = Parameter(
+    name="change",
+    kind="pressure",
+    lower=-1.4,
+    upper=2.5,
+    starts=(-0.15, 0.15),
+    scale=0.3,
+    doc="change of the half deadband in the end",
+)
+_SETTLING = Parameter(
+    name="settling",
+    kind="time",
+    lower=10.0,
+    upper=5000.0,
+    starts=(60.0, 300.0),
+    scale=150.0,
+    doc="time constant of the warm-up",
+    neutral=200.0,
+    size=False,
+)
+_WEAR = Parameter(
+    name="wear",
+    kind="pressure_per_position",
+    lower=-1.0,
+    upper=1.0,
+    starts=(-0.01, 0.01),
+    scale=0.05,
+    doc="growth of the half deadband per travelled distance",
+)
+_WHEN = Parameter(
+    name="when",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=(0.2, 0.4, 0.6, 0.8),
+    scale=0.2,
+    doc="when the change happens, fraction of the recording",
+    neutral=0.5,
+    smooth=False,
+    size=False,
+)
+
+
+def _linear(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_DRIFT_RATE] = values[0]
+
+
+def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_DRIFT_AMP] = values[0]
+    c.valve[V_DRIFT_TAU_S] = values[1]
+
+
+def _wear(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_WEAR] = values[0]
+
+
+def _sudden(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_STEP] = values[0]
+    c.valve[V_STEP_TIME_S] = values[1] * c.duration_s
+
+
+EFFECT = Effect(
+    name="friction_drift",
+    stage="actuator",
+    claim="The deadband changes with time.",
+    equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), or + wear * distance, or a step",
+    source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
+    forms=(
+        Form("linear", (_RATE,), _linear),
+        Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
+        Form("wear", (_WEAR,), _wear),
+        Form("sudden", (_CHANGE, _WHEN), _sudden),
+    ),
+    twins=("lvdt_drift",),
+)

@@ -1,0 +1,42 @@
+"""Friction sits inside the force balance: the stem stops when the pressure reverses, instead of coasting to its target."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_IN_MOTION, V_OUTER, V_OUTER_CENTRE, V_OUTER_SLOPE
+
+_SHARE = Parameter(
+    name="share",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.02, 0.1, 0.35, 0.7),
+    scale=0.3,
+    doc="share of the half deadband that is friction in the force balance; the rest is play before it",
+)
+
+
+def _full(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_IN_MOTION] = 1.0
+
+
+def _partial(c: Coefficients, values: Sequence[float]) -> None:
+    if values[0] <= 0.0:
+        return
+    d = c.design
+    c.valve[V_IN_MOTION] = 1.0
+    c.valve[V_OUTER] = 0.5 * d.deadband * (1.0 - values[0])
+    c.valve[V_OUTER_CENTRE] = d.offset
+    c.valve[V_OUTER_SLOPE] = 1.0 / d.compliance
+
+
+EFFECT = Effect(
+    name="friction_in_motion",
+    stage="actuator",
+    claim="The stem stops when the pressure reverses instead of coasting to its play target.",
+    equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes before",
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799",
+    forms=(Form("full", (), _full), Form("partial", (_SHARE,), _partial)),
+)

@@ -1,0 +1,51 @@
+"""The reading is off by a gain error, a zero error, or both."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import S_GAIN, S_ZERO
+
+_GAIN = Parameter(
+    name="gain",
+    kind="fraction",
+    lower=-0.4,
+    upper=0.6,
+    starts=(-0.01, 0.01),
+    scale=0.03,
+    doc="relative gain error, 0 = right",
+)
+_ZERO = Parameter(
+    name="zero",
+    kind="position",
+    lower=-0.2,
+    upper=0.2,
+    starts=(-0.003, 0.003),
+    scale=0.01,
+    doc="reading at fully open",
+)
+
+
+def _both(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_GAIN] = 1.0 + values[0]
+    c.sensor[S_ZERO] = values[1]
+
+
+def _gain(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_GAIN] = 1.0 + values[0]
+
+
+def _zero(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_ZERO] = values[0]
+
+
+EFFECT = Effect(
+    name="lvdt_calibration",
+    stage="sensor",
+    claim="The reading has a gain error, a zero error, or both.",
+    equations="y = (1 + gain) x + zero",
+    source="IEC 61298-2, Process measurement and control devices, part 2: tests under reference conditions",
+    forms=(Form("zero", (_ZERO,), _zero), Form("gain", (_GAIN,), _gain), Form("gain_and_zero", (_GAIN, _ZERO), _both)),
+    twins=("reduced_travel",),
+)

@@ -1,0 +1,87 @@
+"""The deadband is wider or narrower at some positions; a linear trend over position belongs to `spring_asymmetry`."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.shapes import bow, bump, detrended
+
+#: Length of the raised end, as a fraction of travel.
+END = 0.12
+
+
+def _height(doc: str) -> Parameter:
+    return Parameter(
+        name="height",
+        kind="pressure",
+        lower=-1.45,
+        upper=2.5,
+        starts=(-0.25, -0.04, 0.04, 0.25, 0.8),
+        scale=0.3,
+        doc=doc,
+    )
+
+
+_CENTRE = Parameter(
+    name="centre",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.2, 0.5, 0.8),
+    scale=0.2,
+    doc="where on the travel, 0 = open",
+    neutral=0.5,
+    size=False,
+)
+_WIDTH = Parameter(
+    name="width",
+    kind="fraction",
+    lower=0.02,
+    upper=0.3,
+    starts=(0.08,),
+    scale=0.05,
+    doc="standard deviation of the bell, fraction of travel",
+    neutral=0.1,
+    size=False,
+)
+
+
+def _widen(c: Coefficients, shape: FloatArray) -> None:
+    c.close_shift += shape
+    c.open_shift -= shape
+
+
+def _spot(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, values[0] * bump(c.xi, values[1], values[2]))
+
+
+def _bow(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, values[0] * detrended(bow(c.xi), c.xi))
+
+
+def _open_end(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, values[0] * np.exp(-c.xi / END))
+
+
+def _closed_end(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, values[0] * np.exp(-(1.0 - c.xi) / END))
+
+
+EFFECT = Effect(
+    name="position_dependent_friction",
+    stage="actuator",
+    claim="The deadband is wider or narrower locally, at some positions.",
+    equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width)",
+    source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
+    forms=(
+        Form("spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _spot),
+        Form("bow", (_height("extra half deadband at mid travel against the ends, 1.5 times"),), _bow),
+        Form("open_end", (_height("extra half deadband at fully open"),), _open_end),
+        Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),
+    ),
+    twins=("stiction", "spring_asymmetry"),
+)

@@ -1,0 +1,57 @@
+"""An end stop is not where the design says."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+
+
+def _missing(doc: str) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="missing",
+            kind="fraction",
+            lower=-0.2,
+            upper=0.8,
+            starts=(-0.01, 0.005, 0.04, 0.15, 0.35),
+            scale=0.1,
+            doc=doc,
+        ),
+    )
+
+
+def _upper(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_HIGH] -= values[0] * c.design.travel
+
+
+def _lower(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_LOW] += values[0] * c.design.travel
+
+
+def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_HARD_HIGH] = (1.0 - values[0]) * c.design.travel
+    c.valve[V_HIGH] = max(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
+
+
+def _lower_hit(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_HARD_LOW] = values[0] * c.design.travel
+    c.valve[V_LOW] = min(c.valve[V_LOW], c.valve[V_HARD_LOW])
+
+
+EFFECT = Effect(
+    name="reduced_travel",
+    stage="actuator",
+    claim="An end stop is not where the design says.",
+    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower); hit: only x is held, "
+    "so the stem meets the stop at speed",
+    source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
+    forms=(
+        Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper),
+        Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower),
+        Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit),
+        Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit),
+    ),
+    twins=("lvdt_calibration",),
+)

@@ -1,0 +1,54 @@
+"""Different compliance closing and opening: the two curves of the hysteresis are not parallel."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+
+
+def _asymmetry(doc: str) -> tuple[Parameter]:
+    return (
+        Parameter(
+            name="asymmetry",
+            kind="fraction",
+            lower=-0.45,
+            upper=0.45,
+            starts=(-0.08, -0.01, 0.01, 0.08),
+            scale=0.08,
+            doc=doc,
+        ),
+    )
+
+
+def _hinged_open(c: Coefficients, values: Sequence[float]) -> None:
+    # The stiffness, not the compliance, is split evenly: then the mean of the two curves does not move.
+    c.close_gain = 1.0 / (1.0 - values[0])
+    c.open_gain = 1.0 / (1.0 + values[0])
+
+
+def _hinged_mid(c: Coefficients, values: Sequence[float]) -> None:
+    _hinged_open(c, values)
+    shift = 0.5 * c.design.travel / c.design.compliance * values[0]
+    c.close_shift += shift
+    c.open_shift -= shift
+
+
+EFFECT = Effect(
+    name="spring_asymmetry",
+    stage="actuator",
+    claim="The compliance differs between closing and opening (k1 != k2).",
+    equations="closing p = a1 + w/k1, opening p = a2 + w/k2, 1/k1 = (1 - asymmetry)/k, 1/k2 = (1 + asymmetry)/k",
+    source="Lustrino, MIT thesis (2009), section 2.1 (k1 and k2 measured, their mean used)",
+    forms=(
+        Form(
+            "hinged_open",
+            _asymmetry("half the difference of the stiffnesses; deadband kept at fully open"),
+            _hinged_open,
+        ),
+        Form(
+            "hinged_mid", _asymmetry("half the difference of the stiffnesses; deadband kept at mid travel"), _hinged_mid
+        ),
+    ),
+    twins=("position_dependent_friction",),
+)

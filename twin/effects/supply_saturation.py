@@ -1,0 +1,34 @@
+"""Pressure cannot exceed what the air supply gives."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import EP_SUPPLY
+
+_SUPPLY = Parameter(
+    name="supply",
+    kind="pressure",
+    lower=3.0,
+    upper=60.0,
+    starts=(8.0, 9.5, 10.5, 11.25, 12.0, 13.0, 14.5),
+    scale=8.0,
+    doc="highest pressure the supply gives",
+    neutral=60.0,
+)
+
+
+def _apply(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_SUPPLY] = values[0]
+
+
+EFFECT = Effect(
+    name="supply_saturation",
+    stage="ep",
+    claim="Pressure cannot exceed what the air supply gives.",
+    equations="dp/dt = (min(u, supply) - p) / tau",
+    source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators)",
+    forms=(Form("ceiling", (_SUPPLY,), _apply),),
+    twins=("ep_calibration",),
+)
