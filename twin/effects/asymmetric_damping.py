@@ -33,7 +33,7 @@ def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
 
 
 _ASYMMETRY = _parameter(
-    "asymmetry", "half the difference of the time constants over their mean, + = closes more slowly"
+    "asymmetry", "half the difference of the time constants over their mean, positive = closes slowly"
 )
 
 EFFECT = Effect(

@@ -54,7 +54,7 @@ EFFECT = Effect(
     claim="Fluid through the valve pushes the plug, depending on opening.",
     equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
     "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12)",
-    source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (flow forces); Borden (ed.), Control Valves (ISA 1998)",
+    source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5; Borden (ed.), Control Valves (ISA 1998)",
     forms=(
         Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
         Form("near_seat", _force("peak of the force at 12 % opening, as pressure"), _near_seat),

@@ -81,7 +81,7 @@ EFFECT = Effect(
     name="friction_drift",
     stage="actuator",
     claim="The deadband changes with time.",
-    equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), or + wear * distance, or a step",
+    equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step",
     source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
     forms=(
         Form("linear", (_RATE,), _linear),

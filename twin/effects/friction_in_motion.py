@@ -1,4 +1,4 @@
-"""Friction sits inside the force balance: the stem stops when the pressure reverses, instead of coasting to its target."""
+"""Friction sits inside the force balance: the stem stops when the pressure reverses, instead of coasting on."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _SHARE = Parameter(
 )
 
 
-def _full(c: Coefficients, values: Sequence[float]) -> None:
+def _full(c: Coefficients, _values: Sequence[float]) -> None:
     c.valve[V_IN_MOTION] = 1.0
 
 

@@ -52,7 +52,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
     equations="y = x + rate t, or y = x + change (1 - exp(-t / settling))",
-    source="IEC 61298-3, Process measurement and control devices, part 3: tests for the effects of influence quantities",
+    source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(Form("linear", (_RATE,), _linear), Form("warm_up", (_CHANGE, _SETTLING), _warm_up)),
     twins=("friction_drift", "creep"),
 )

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from twin.effect import Coefficients, Effect, Form, Parameter
 
 
-def _apply(c: Coefficients, values: Sequence[float]) -> None:
+def _apply(_c: Coefficients, _values: Sequence[float]) -> None:
     # Which readings are false is chance: the expected trajectory does not change, the events in the reading do.
     return
 

@@ -43,11 +43,11 @@ EFFECT = Effect(
     forms=(
         Form(
             "hinged_open",
-            _asymmetry("half the difference of the stiffnesses; deadband kept at fully open"),
+            _asymmetry("half the difference of the stiffnesses, deadband kept fully open"),
             _hinged_open,
         ),
         Form(
-            "hinged_mid", _asymmetry("half the difference of the stiffnesses; deadband kept at mid travel"), _hinged_mid
+            "hinged_mid", _asymmetry("half the difference of the stiffnesses, deadband kept at mid travel"), _hinged_mid
         ),
     ),
     twins=("position_dependent_friction",),
