@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import dataclass, fields
 from importlib import import_module
 from pathlib import Path
 from typing import Any, Generic, Protocol, TypeVar
@@ -82,7 +82,8 @@ class Law(ABC, Generic[S]):
 
     @property
     def settings(self) -> Mapping[str, float | str]:
-        return {f.name: getattr(self, f.name) for f in fields(self) if f.name != "design"}
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: value for name, value in values.items() if isinstance(value, (int, float, str))}
 
 
 def _see(sample: Sample) -> Seen | None:
@@ -116,7 +117,7 @@ def controller_class(name: str) -> type[Law[Any]]:
 
 def setting_defaults(name: str) -> Mapping[str, float | str]:
     """The settings of a controller and their defaults."""
-    return {f.name: f.default for f in fields(controller_class(name)) if f.default is not MISSING}
+    return {f.name: f.default for f in fields(controller_class(name)) if isinstance(f.default, (int, float, str))}
 
 
 def make_controller(name: str, design: DesignModel, **settings: float | str) -> Controller[Any]:

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from control.controller import Seen
 from control.design import DesignModel
 
-
 MIDDLE_PSI = 9.0
 
 
