@@ -1,0 +1,38 @@
+"""Names of ports: `/dev/ttyUSB0`, a pty, `COM3`, `rtu+tcp://HOST:PORT`, `tcp://HOST:PORT`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from urllib.parse import urlsplit
+
+from hal.errors import BadInput
+
+
+@dataclass(frozen=True, slots=True)
+class PortName:
+    """Where the bench is. `kind`: `serial` (RTU on a tty), `rtu+tcp` (RTU frames in a socket), `tcp` (Modbus TCP)."""
+
+    kind: str
+    text: str
+    host: str = ""
+    number: int = 0
+
+
+def parse_port(text: str) -> PortName:
+    """Raises: `BadInput` for a URL that is none of the forms above."""
+    if "://" not in text:
+        if not text.strip():
+            raise BadInput("the port is empty; `lostmotion ports` lists the serial ports")
+        return PortName("serial", text)
+    parts = urlsplit(text)
+    if parts.scheme not in ("rtu+tcp", "tcp"):
+        raise BadInput(
+            f"port '{text}': unknown kind '{parts.scheme}'; use a path, rtu+tcp://HOST:PORT or tcp://HOST:PORT"
+        )
+    try:
+        number = parts.port if parts.port is not None else 502
+    except ValueError as error:
+        raise BadInput(f"port '{text}': the TCP port must be a number from 1 to 65535") from error
+    if not parts.hostname or not 1 <= number <= 65535 or parts.path.strip("/"):
+        raise BadInput(f"port '{text}' must look like {parts.scheme}://HOST:PORT")
+    return PortName(parts.scheme, text, parts.hostname, number)

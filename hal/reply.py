@@ -1,0 +1,69 @@
+"""What a bus hands back, and what a bus is."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from hal.errors import DeviceRefused
+from hal.pdu import EXCEPTIONS, Request, words_of
+from hal.stats import BusStats
+
+
+@dataclass(frozen=True, slots=True)
+class Reply:
+    """An answer: its PDU, and the bench time [s] just before the request left and just after the answer was complete.
+
+    `rest` is the number of bytes that followed the answer without a pause; a clean line has none.
+    """
+
+    pdu: bytes
+    sent_s: float
+    received_s: float
+    rest: int = 0
+
+    @property
+    def midpoint_s(self) -> float:
+        return 0.5 * (self.sent_s + self.received_s)
+
+    @property
+    def latency_s(self) -> float:
+        return self.received_s - self.sent_s
+
+    @property
+    def words(self) -> tuple[int, ...]:
+        return words_of(self.pdu)
+
+    @property
+    def refused(self) -> bool:
+        return self.pdu[0] >= 0x80
+
+
+class Bus(Protocol):
+    """What a bench needs of a line: one request at a time, and never somebody else's answer."""
+
+    @property
+    def stats(self) -> BusStats: ...
+
+    def open(self) -> None:
+        """Raises: `PortFault`."""
+
+    def close(self) -> None: ...
+
+    def transact(self, request: Request, retries: int = 0) -> Reply:
+        """Sends a request up to 1 + `retries` times.
+
+        Raises: `WireFault` without a trusted answer, `DeviceRefused` on an exception, `PortFault` on a lost port.
+        """
+
+
+def check_refusal(request: Request, reply: Reply, port: str) -> None:
+    """Raises: `DeviceRefused` when the answer is an exception."""
+    if reply.refused:
+        code = reply.pdu[1]
+        raise DeviceRefused(
+            f"unit {request.unit} on {port} refused function {request.function}: exception {code} "
+            f"({EXCEPTIONS[code]}); compare the profile's addresses and function codes with the device's manual",
+            function=request.function,
+            code=code,
+        )
