@@ -208,7 +208,7 @@ def _why(message: str, data: bytes, dialect: Dialect) -> str:
     for number, line in _sample_lines(data, dialect):
         cells = len(split(line, dialect.separator))
         if cells != expected:
-            return f"line {number} of the file: {cells} cells where the header has {expected} ('{line[:60]}'); correct the line"
+            return f"line {number} of the file: {cells} cells, the header has {expected} ('{line[:60]}'); correct it"
     return f"row {wrong[1]}: {message}" if wrong else message
 
 

@@ -1,0 +1,162 @@
+"""What a run looks like in rerun: which column goes where, and in which colour."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from logs.plane import Colour, Plane, design_curves
+from logs.recording import FloatArray
+
+if TYPE_CHECKING:
+    import rerun as rr
+
+ASKED: Colour = (110, 168, 254)
+MEASURED: Colour = (255, 166, 64)
+ERROR: Colour = (240, 98, 146)
+CLOSING: Colour = (129, 199, 132)
+OPENING: Colour = (186, 140, 255)
+OTHERS: tuple[Colour, ...] = ((77, 208, 225), (255, 213, 79), (174, 213, 129), (244, 143, 177), (176, 190, 197))
+RISING: Colour = (120, 96, 64)
+FALLING: Colour = (70, 96, 128)
+STATES = {
+    "idle": 0x78909CFF,
+    "conditioning": 0x4DB6ACFF,
+    "running": 0x66BB6AFF,
+    "settling": 0xFFD54FFF,
+    "paused": 0x90A4AEFF,
+    "safe": 0x5C9DF5FF,
+    "fault": 0xEF5350FF,
+}
+OTHER_STATE = 0xA1887FFF
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Columns that share a plot: one wide entity, one colour and one name each."""
+
+    entity: str
+    columns: tuple[str, ...]
+    labels: tuple[str, ...]
+    colours: tuple[Colour, ...]
+    unit: str
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """Groups of columns, and the plane; made from the columns of a record and its start document."""
+
+    groups: tuple[Group, ...]
+    plane: Plane | None
+    plane_x: str
+    position: str
+    target: str
+    curves: Mapping[str, FloatArray]
+
+    @classmethod
+    def of(cls, units: Mapping[str, str], start: Mapping[str, object]) -> Scene:
+        """`units` names the columns and their units; `start` may hold "design" and "bench"."""
+        names = {role: _first(units, role) for role in ("command", "pressure", "position", "target")}
+        groups = [_pair("/pressure", units, names["command"], names["pressure"])]
+        groups.append(_pair("/position", units, names["target"], names["position"]))
+        taken = {*names.values(), "time_s", "next_command_psi"} | {n for n in units if n.startswith("next_")}
+        groups += _timing(units, taken)
+        groups += _rest(units, taken | {"lateness_s", "latency_s"})
+        design = start.get("design")
+        curves = design_curves(design) if isinstance(design, Mapping) else None
+        x_name = names["pressure"] or names["command"]
+        return cls(
+            groups=tuple(group for group in groups if group.columns),
+            plane=_plane(units, x_name, names["position"], start, curves) if names["position"] and x_name else None,
+            plane_x=x_name,
+            position=names["position"],
+            target=names["target"],
+            curves=curves or {},
+        )
+
+    def draw_static(self, stream: rr.RecordingStream, states: Sequence[str] = ()) -> None:
+        """Logs names, colours, the frame of the plane and the design curves; `states` beyond the usual ones too."""
+        import rerun as rr
+
+        for group in self.groups:
+            _style(stream, group.entity, group.labels, group.colours)
+        if self.target:
+            _style(stream, "/error", ("error",), (ERROR,))
+        colours = {**STATES, **{state: OTHER_STATE for state in states if state not in STATES}}
+        words = rr.StateConfiguration(
+            values=list(colours),
+            labels=[state.capitalize() for state in colours],
+            colors=np.array(list(colours.values()), dtype=np.uint32),
+        )
+        stream.log("/state/bench", words, static=True)
+        if self.plane is not None:
+            self.plane.draw_frame(stream)
+            for name, colour in (("closing", CLOSING), ("opening", OPENING)):
+                if name in self.curves:
+                    self.plane.draw_line(stream, f"design/{name}", [self.curves[name]], colour, 1.3)
+
+
+def _style(stream: rr.RecordingStream, entity: str, names: Sequence[str], colours: Sequence[Colour]) -> None:
+    import rerun as rr
+
+    lines = rr.SeriesLines(names=list(names), colors=list(colours), widths=[1.5] * len(names))
+    stream.log(entity, lines, static=True)
+
+
+def _first(units: Mapping[str, str], role: str) -> str:
+    """The column of a role: `pressure_psi`, `pressure_percent`, or `pressure`; "" where there is none."""
+    plain = [name for name in units if name == role or name in (f"{role}_psi", f"{role}_in", f"{role}_percent")]
+    return plain[0] if plain else ""
+
+
+def _pair(entity: str, units: Mapping[str, str], asked: str, measured: str) -> Group:
+    both = [(name, colour) for name, colour in ((asked, ASKED), (measured, MEASURED)) if name]
+    columns = tuple(name for name, _ in both)
+    labels = tuple(name.partition("_")[0] for name in columns)
+    return Group(entity, columns, labels, tuple(colour for _, colour in both), units[columns[0]] if columns else "")
+
+
+def _timing(units: Mapping[str, str], taken: set[str]) -> list[Group]:
+    names = tuple(name for name in ("lateness_s", "latency_s") if name in units and name not in taken)
+    return [Group("/timing", names, tuple(name[:-2] for name in names), OTHERS[: len(names)], "s")] if names else []
+
+
+def _rest(units: Mapping[str, str], taken: set[str]) -> list[Group]:
+    """Every other column in a plot of its own, so that nothing recorded stays unseen."""
+    rest = [name for name in units if name not in taken]
+    return [
+        Group(f"/aux/{name}", (name,), (name,), (OTHERS[number % len(OTHERS)],), units[name])
+        for number, name in enumerate(rest)
+    ]
+
+
+def _plane(
+    units: Mapping[str, str],
+    x_name: str,
+    y_name: str,
+    start: Mapping[str, object],
+    curves: Mapping[str, FloatArray] | None,
+) -> Plane:
+    bench = start.get("bench")
+    info: Mapping[str, object] = bench if isinstance(bench, Mapping) else {}
+    percent_x, percent_y = units[x_name] == "percent", units[y_name] == "percent"
+    low, high = (0.0, 100.0) if percent_x else (3.0, 15.0)
+    low, high = _number(info.get("command_min"), low), _number(info.get("command_max"), high)
+    travel = 100.0 if percent_y else _number(info.get("travel_in"), 0.5625)
+    if curves:
+        corner = curves["closing"][2]
+        travel, high = max(travel, float(corner[1])), max(high, float(corner[0]) + 0.5)
+    margin = 0.06 * travel
+    return Plane(
+        x=(low, high),
+        y=(-margin, travel + margin),
+        x_label=f"{x_name.partition('_')[0]} [{units[x_name]}]",
+        y_label=f"position [{units[y_name]}]",
+    )
+
+
+def _number(value: object, other: float) -> float:
+    return float(value) if isinstance(value, int | float) else other
