@@ -1,0 +1,72 @@
+"""Closure against the floor and the test for no gap, on residuals of known size."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from twin.closure import closure, equivalence, gap
+
+N = 6000
+FLOOR = 0.14
+
+
+def noise(seed: int) -> np.ndarray:
+    return FLOOR * np.random.default_rng(seed).standard_normal(N)
+
+
+def slow(size: float) -> np.ndarray:
+    return size * np.sqrt(2) * np.sin(np.arange(N) / 40.0)
+
+
+def test_closure_of_known_residuals() -> None:
+    share = closure(noise(1) + slow(4.0), noise(1) + slow(0.4), FLOOR, 3.0)
+    assert share is not None
+    assert share.value == pytest.approx(0.99, abs=0.002)
+    assert share.ci95[0] <= 0.99 <= share.ci95[1]
+    assert share.ci95[1] - share.ci95[0] < 0.01
+    worse = closure(noise(1) + slow(1.0), noise(1) + slow(2.0), FLOOR)
+    assert worse is not None
+    assert worse.value == pytest.approx(-3.0, abs=0.1)
+
+
+def test_nothing_to_close_is_none() -> None:
+    assert closure(noise(1), noise(1), FLOOR) is None
+    assert closure(np.full(N, np.nan), noise(1), FLOOR) is None
+
+
+def test_missing_rows_are_left_out_of_both() -> None:
+    before, after = noise(1) + slow(4.0), noise(1) + slow(0.4)
+    before[::7], after[::5] = np.nan, np.nan
+    share = closure(before, after, FLOOR)
+    assert share is not None
+    assert share.value == pytest.approx(0.99, abs=0.003)
+
+
+def test_gap_is_in_percent_of_travel_and_repeatable() -> None:
+    arguments = (noise(1) + slow(4.0), noise(1) + slow(3.0), noise(1), FLOOR, 50.0)
+    numbers = gap(*arguments)
+    assert numbers == gap(*arguments)
+    assert numbers.before == pytest.approx(2 * np.hypot(4.0, FLOOR), rel=0.01)
+    assert numbers.noise_floor == pytest.approx(0.28)
+    assert numbers.reducible_closed is not None
+
+
+def test_equivalence_shows_no_gap_only_with_enough_data() -> None:
+    assert equivalence(noise(2), FLOOR, 0.05).no_gap
+    assert not equivalence(noise(2)[:40], FLOOR, 0.05).no_gap
+    gapped = equivalence(noise(2) + slow(0.10), FLOOR, 0.05)
+    assert not gapped.no_gap
+    assert gapped.excess == pytest.approx(0.10, abs=0.02)
+    assert gapped.ci95[0] <= 0.10 <= gapped.ci95[1]
+    assert not equivalence(noise(2), FLOOR, 0.05, floor_relative_error=0.5).no_gap
+
+
+def test_equivalence_errs_at_its_level() -> None:
+    """With the true excess at the margin, `no gap` must come in about 5 % of the cases."""
+    rng = np.random.default_rng(3)
+    said = 0
+    for seed in range(200):
+        residual = np.hypot(FLOOR, 0.07) * rng.standard_normal(1500)
+        said += equivalence(residual, FLOOR, 0.07, seed=seed).no_gap
+    assert said <= 20
