@@ -1,0 +1,50 @@
+"""Whatever way a run ends: first the safe command, then the record says which way it was and whether it was confirmed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Literal, Protocol
+
+from control.loop import Loop, Outcome
+from hal.errors import SafetyTrip
+
+
+class Record(Protocol):
+    """What is closed at the end."""
+
+    def close(self, status: Literal["success", "abort", "fail"], reason: str) -> None: ...
+
+
+def supervised(loop: Loop, record: Record, job: Callable[[], Outcome]) -> Outcome:
+    """Runs the job and closes its record as `success`, `abort` (the operator) or `fail` (everything else).
+
+    Raises: what the job raised, after the valve has been made safe and the record is closed.
+    """
+    try:
+        outcome = job()
+    except KeyboardInterrupt:
+        _end(loop, record, "abort", "interrupted by the operator (Ctrl-C)")
+        raise
+    except SafetyTrip as trip:
+        _end(loop, record, "fail", f"safety trip: {trip}")
+        raise
+    except BaseException as error:
+        _end(loop, record, "fail", f"{type(error).__name__}: {error}")
+        raise
+    if outcome.stopped:
+        _end(loop, record, "abort", outcome.stopped)
+    else:
+        _end(loop, record, "success", "finished")
+    return outcome
+
+
+def _end(loop: Loop, record: Record, status: Literal["success", "abort", "fail"], reason: str) -> None:
+    confirmed = loop.bench.make_safe(reason)
+    info = loop.bench.info
+    command = f"{info.safe_command:g} {info.command_unit}"
+    if confirmed:
+        safe = f"the bench has confirmed the safe command, {command}"
+    else:
+        safe = f"the safe command, {command}, was NOT confirmed: check the valve"
+    loop.say("info" if confirmed else "error", f"{reason}; {safe}")
+    record.close(status, f"{reason}; {safe}")
