@@ -1,7 +1,8 @@
 """Where each coefficient stands in the kernels' flat vectors. An effect writes here; a kernel reads here.
 
 Plain integers rather than an enum, because the compiled kernels use them as constants. Every slot has a neutral value
-in `NEUTRAL`; a vector of neutral values is the design model of interfaces.md.
+in the vectors that the functions below make; a vector of neutral values is the design model of interfaces.md. Only ever
+append: the numbers are compiled into cached kernels.
 """
 
 from __future__ import annotations

@@ -1,4 +1,7 @@
-"""The E/P converter compiled: command steps in, pressure on the fine time grid out."""
+"""The E/P converter: command steps in, pressure on the fine time grid out, as compiled passes.
+
+First the goal (delay, ignored band, gain, zero, supply), then the lag toward it with its bounds.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,30 @@ from twin.slots import (
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     EP_ZERO,
+    FOREVER,
 )
+
+_SAME = 1e-9
+
+
+def ep_kernel(
+    time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float, out: FloatArray
+) -> None:
+    """Fills `out` (shape (offsets[-1] + 1,)) with the pressure; `offsets[i]` is the fine index of row i.
+
+    Without a delay the goal is constant within a row and has shape (n,), with one it has the shape of `out`.
+    """
+    goal = np.ascontiguousarray(command, dtype=np.float64)
+    if c[EP_DEAD_S] > 0.0:
+        goal = np.empty(out.size)
+        _delayed(time_s, np.ascontiguousarray(command, dtype=np.float64), offsets, c[EP_DEAD_S], goal)
+    if c[EP_BAND_MODE] in (1.0, 2.0):
+        source, goal = goal, np.empty(goal.size)
+        _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
+    if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
+        goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+    bounded = c[EP_BAND_MODE] >= 3.0 or c[EP_RATE_UP] < FOREVER or c[EP_RATE_DOWN] < FOREVER
+    (_follow_bounded if bounded else _follow)(time_s, offsets, goal, c, p0, out)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -42,49 +68,83 @@ def _mean_command(time_s: FloatArray, command: FloatArray, start_s: float, stop_
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _toward(p: float, v: float, h: float, c: FloatArray) -> float:
+def _delayed(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, dead_s: float, out: FloatArray) -> None:
+    """Fills `out` (fine) with the mean over each fine step of the command `dead_s` earlier."""
+    out[0] = command[0]
+    j = 0
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        begin = time_s[i - 1] - dead_s
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            out[f], j = _mean_command(time_s, command, begin, begin + h, j)
+            begin += h
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _banded(values: FloatArray, band: float, hold: bool, start: float, out: FloatArray) -> None:
+    """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows."""
+    held = start
+    out[0] = held
+    for i in range(1, values.size):
+        u = values[i]
+        if not hold:
+            held = max(u - band, min(u + band, held))
+        elif abs(u - held) > band:
+            held = u
+        out[i] = held
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _follow(
+    time_s: FloatArray, offsets: np.ndarray, goal: FloatArray, c: FloatArray, p0: float, out: FloatArray
+) -> None:
+    """A lag toward the goal, exact for a goal that is constant within a fine step."""
+    per_row = goal.size == time_s.size
+    p = p0
+    out[0] = p
+    last_h = -1.0
+    e_rise = e_fall = 0.0
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        if abs(h - last_h) > _SAME * h:
+            last_h = h
+            e_rise = np.exp(-h / max(c[EP_TAU_RISE_S], 1e-12))
+            e_fall = np.exp(-h / max(c[EP_TAU_FALL_S], 1e-12))
+        v = goal[i]
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            if not per_row:
+                v = goal[f]
+            p = v + (p - v) * (e_rise if v > p else e_fall)
+            out[f] = p
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     """Pressure after `h` seconds of a lag toward `v`, with overlap band and slope limits."""
     mode = c[EP_BAND_MODE]
     goal = v
     if mode >= 3.0:
-        error = v - p
-        if abs(error) <= c[EP_BAND]:
+        if abs(v - p) <= c[EP_BAND]:
             return p
         if mode == 3.0:
-            goal = v - c[EP_BAND] if error > 0.0 else v + c[EP_BAND]
+            goal = v - c[EP_BAND] if v > p else v + c[EP_BAND]
     tau_s = c[EP_TAU_RISE_S] if goal > p else c[EP_TAU_FALL_S]
     new = goal if tau_s <= 0.0 else goal + (p - goal) * np.exp(-h / tau_s)
     if mode == 4.0:
-        edge = v - c[EP_BAND] if v > p else v + c[EP_BAND]
-        new = min(new, edge) if v > p else max(new, edge)
+        new = min(new, v - c[EP_BAND]) if v > p else max(new, v + c[EP_BAND])
     return max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def ep_kernel(
-    time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float, out: FloatArray
+def _follow_bounded(
+    time_s: FloatArray, offsets: np.ndarray, goal: FloatArray, c: FloatArray, p0: float, out: FloatArray
 ) -> None:
-    """Fills `out` (shape (offsets[-1] + 1,)) with the pressure; `offsets[i]` is the fine index of row i."""
-    out[0] = p0
+    """A lag toward the goal with an overlap band and limited slope."""
+    per_row = goal.size == time_s.size
     p = p0
-    held = (p0 - c[EP_ZERO]) / c[EP_GAIN] if c[EP_BAND_MODE] > 0.0 else command[0]
-    j = 0
+    out[0] = p
     for i in range(1, time_s.size):
-        m = offsets[i] - offsets[i - 1]
-        h = (time_s[i] - time_s[i - 1]) / m
-        for s in range(m):
-            if c[EP_DEAD_S] > 0.0:
-                begin = time_s[i - 1] + s * h - c[EP_DEAD_S]
-                u, j = _mean_command(time_s, command, begin, begin + h, j)
-            else:
-                u = command[i]
-            if c[EP_BAND_MODE] == 1.0:
-                if abs(u - held) > c[EP_BAND]:
-                    held = u
-            elif c[EP_BAND_MODE] == 2.0:
-                held = max(u - c[EP_BAND], min(u + c[EP_BAND], held))
-            else:
-                held = u
-            v = min(c[EP_ZERO] + c[EP_GAIN] * held, c[EP_SUPPLY])
-            p = _toward(p, v, h, c)
-            out[offsets[i - 1] + s + 1] = p
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            p = _bounded_step(p, goal[i] if per_row else goal[f], h, c)
+            out[f] = p

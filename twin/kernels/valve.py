@@ -1,16 +1,18 @@
-"""The valve compiled: pressure on the fine grid in, true stem position on the fine grid out.
+"""The valve: pressure on the fine grid in, true stem position on the fine grid out, as a row of compiled passes.
 
-The two backlash curves arrive as tables over a uniform pressure grid, so that every effect which bends them (spring,
-friction spot, flow force) costs nothing here. Play elements may be several (distributed hysteresis). The lag is solved
-exactly for a play output that is linear within a fine step.
+Where target and stem do not act on each other the passes are separate and each is a tight loop; where they do
+(`twin/kernels/coupled.py`) one loop does both. Each pass is exact for inputs that are linear within a fine step.
 """
 
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.coupled import coupled_pass
+from twin.kernels.lag import lagged
+from twin.kernels.play import plain_play, play_target
+from twin.kernels.stem import stem_pass
 from twin.slots import (
     V_BREAKAWAY,
     V_CREEP1,
@@ -20,14 +22,21 @@ from twin.slots import (
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
+    V_FORCE_CREEP,
+    V_FORCE_CREEP_TAU_S,
+    V_HARD_HIGH,
+    V_HARD_LOW,
     V_HIGH,
     V_IN_MOTION,
     V_LOW,
+    V_OUTER,
+    V_OUTER_CENTRE,
+    V_OUTER_SLOPE,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_STEP,
     V_STEP_TIME_S,
-    V_STICK_SPEED,
+    V_STRIBECK,
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
     V_TAU_CLOSE_S,
@@ -35,37 +44,10 @@ from twin.slots import (
     V_WEAR,
 )
 
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
-    """Linear interpolation in a uniform table, extended by its end slopes."""
-    q = (p - p_first) / p_step
-    i = min(max(int(q), 0), table.size - 2)
-    return table[i] + (q - i) * (table[i + 1] - table[i])
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK]
+_CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _ramp_lag(x: float, w_a: float, w_b: float, h: float, tau_s: float) -> float:
-    """Exact step of tau x' = w - x for w linear from w_a to w_b over h seconds."""
-    if tau_s <= 1e-9:
-        return w_b
-    e = np.exp(-h / tau_s)
-    slope_tau = (w_b - w_a) / h * tau_s
-    return w_b - slope_tau + (x - w_a + slope_tau) * e
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _half_band(t: float, travelled: float, c: FloatArray) -> float:
-    """How much wider the half deadband is now than at the start [pressure]."""
-    grown = c[V_DRIFT_RATE] * t + c[V_WEAR] * travelled
-    if c[V_DRIFT_AMP] != 0.0:
-        grown += c[V_DRIFT_AMP] * (1.0 - np.exp(-t / c[V_DRIFT_TAU_S]))
-    if t >= c[V_STEP_TIME_S]:
-        grown += c[V_STEP]
-    return grown
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def valve_kernel(
     time_s: FloatArray,
     pressure: FloatArray,
@@ -82,71 +64,49 @@ def valve_kernel(
     out: FloatArray,
 ) -> None:
     """Fills `out` with the stem position. `spreads[j]` widens the half deadband of play element j [pressure]."""
-    plays = spreads.size
-    elements = np.empty(plays)
-    low = c[V_LOW]
-    high = c[V_HIGH]
-    q = pressure[0]
-    for j in range(plays):
-        top = _look_up(q + spreads[j], p_first, p_step, opening)
-        bottom = _look_up(q - spreads[j], p_first, p_step, closing)
-        elements[j] = max(low, min(high, max(bottom, min(top, w0))))
-    w = 0.0
-    for j in range(plays):
-        w += weights[j] * elements[j]
-    x = max(low, min(high, x0))
-    after = w
-    creep1 = x
-    creep2 = x
-    stuck = True
-    travelled = 0.0
-    out[0] = x
-    f = 0
-    for i in range(1, time_s.size):
-        m = offsets[i] - offsets[i - 1]
-        h = (time_s[i] - time_s[i - 1]) / m
-        for s in range(m):
-            p_a = pressure[f]
-            f += 1
-            q = _ramp_lag(q, p_a, pressure[f], h, c[V_TAU_BEFORE_S]) if c[V_TAU_BEFORE_S] > 0.0 else pressure[f]
-            t = time_s[i - 1] + (s + 1) * h - time_s[0]
-            grown = _half_band(t, travelled, c)
-            if c[V_IN_MOTION] != 0.0:
-                shift = x - w
-                for j in range(plays):
-                    elements[j] += c[V_IN_MOTION] * shift
-                w += c[V_IN_MOTION] * shift
-            extra = c[V_BREAKAWAY] if stuck else 0.0
-            w_b = 0.0
-            for j in range(plays):
-                e = elements[j]
-                band = spreads[j] + grown
-                if extra > 0.0:
-                    low_j = _look_up(q - band - extra, p_first, p_step, closing)
-                    high_j = _look_up(q + band + extra, p_first, p_step, opening)
-                    if low_j <= e <= high_j:
-                        w_b += weights[j] * e
-                        continue
-                    stuck = False
-                low_j = _look_up(q - band, p_first, p_step, closing)
-                high_j = _look_up(q + band, p_first, p_step, opening)
-                e = max(low, min(high, max(low_j, min(high_j, e))))
-                elements[j] = e
-                w_b += weights[j] * e
-            new_after = _ramp_lag(after, w, w_b, h, c[V_TAU_AFTER_S])
-            closing_now = new_after + after > 2.0 * x
-            new_x = _ramp_lag(x, after, new_after, h, c[V_TAU_CLOSE_S] if closing_now else c[V_TAU_OPEN_S])
-            new_x = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new_x))
-            new_x = max(low, min(high, new_x))
-            if abs(new_x - x) < c[V_STICK_SPEED] * h:
-                stuck = True
-            travelled += abs(new_x - x)
-            y = new_x
-            if c[V_CREEP1] != 0.0 or c[V_CREEP2] != 0.0:
-                creep1 = _ramp_lag(creep1, x, new_x, h, c[V_CREEP1_TAU_S])
-                creep2 = _ramp_lag(creep2, x, new_x, h, c[V_CREEP2_TAU_S])
-                y += c[V_CREEP1] * (creep1 - new_x) + c[V_CREEP2] * (creep2 - new_x)
-            x = new_x
-            after = new_after
-            w = w_b
-            out[f] = y
+    force = _force(time_s, offsets, pressure, c, w0)
+    widening = _widening(time_s, offsets, c)
+    tables = (p_first, p_step, closing, opening)
+    stem_low, stem_high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
+    if c[_COUPLING].any():
+        stops = np.array([c[V_LOW], c[V_HIGH], stem_low, stem_high])
+        coupled_pass(time_s, offsets, force, widening, c, stops, *tables, spreads, weights, x0, w0, out)
+    else:
+        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, spreads, weights, w0)
+        target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
+        lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
+        stem_pass(time_s, offsets, target, lags_s, rates, stem_low, stem_high, x0, out)
+    _creep(time_s, offsets, c, out)
+
+
+def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:
+    """The pressure that reaches the play: lagged, creeping, behind an outer play."""
+    force = lagged(time_s, offsets, pressure, c[V_TAU_BEFORE_S])
+    if c[V_FORCE_CREEP] != 0.0:
+        late = lagged(time_s, offsets, force, c[V_FORCE_CREEP_TAU_S])
+        force = force + c[V_FORCE_CREEP] * (late - force)
+    if c[V_OUTER] > 0.0:
+        inner = np.empty_like(force)
+        plain_play(force, c[V_OUTER], c[V_OUTER_CENTRE] + c[V_OUTER_SLOPE] * w0, inner)
+        force = inner
+    return force
+
+
+def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatArray:
+    """How much wider the half deadband is than at the start: one number, or one for each fine point [pressure].
+
+    An outer play takes its width from that of the play behind it.
+    """
+    if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
+        return np.array([-c[V_OUTER]])
+    t = np.interp(np.arange(offsets[-1] + 1), offsets, time_s - time_s[0])
+    grown = c[V_DRIFT_RATE] * t - c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
+    widening: FloatArray = grown + np.where(t >= c[V_STEP_TIME_S], c[V_STEP], 0.0) - c[V_OUTER]
+    return widening
+
+
+def _creep(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, out: FloatArray) -> None:
+    """Replaces part of the motion by its slow tails."""
+    shares = [(c[share], c[tau]) for share, tau in _CREEPS if c[share] != 0.0]
+    if shares:
+        out += sum(share * (lagged(time_s, offsets, out, tau_s) - out) for share, tau_s in shares)
