@@ -66,7 +66,10 @@ class Outcome:
 
 @dataclass(slots=True)
 class Loop:
-    """One run on one bench. `max_missing` consecutive ticks without a trusted reply end it.
+    """One run on one bench. `aux` names the further channels that are recorded.
+
+    A bench that raises `WireFault` may do so `max_missing` - 1 times in a row; one that hands out missing samples
+    counts them itself (the safety layer does).
 
     Raises from `run`: `SafetyTrip`, and whatever else the bench raises.
     """
@@ -77,6 +80,7 @@ class Loop:
     hooks: Hooks = field(default_factory=Hooks)
     settle: SettleRule = field(default_factory=SettleRule)
     max_missing: int = 5
+    aux: tuple[str, ...] = ()
 
     rows: int = 0
     missing: int = 0
@@ -85,6 +89,7 @@ class Loop:
     _missing_in_a_row: int = 0
     _steps_done: int = 0
     _stopped: str = ""
+    _state: str = ""
     _said: dict[str, int] = field(default_factory=dict)
 
     def run(self, plan: Plan, drive: Drive) -> Outcome:
@@ -97,7 +102,7 @@ class Loop:
         for number, step in enumerate((*plan.lead, *plan.steps), start=-len(plan.lead)):
             counted = number >= 0
             name = step.label or f"step {number + plan.first}"
-            self.say_state(name)
+            self.say_state("running" if counted else step.label or "conditioning")
             index = number + plan.first if counted else LEAD
             self._play(step, index, drive if counted else lead_drive, ticker, (done_s, plan.duration_s, name))
             if self._stopped:
@@ -117,8 +122,11 @@ class Loop:
             sink.event(self.now_s(), level, text)
 
     def say_state(self, text: str) -> None:
-        for sink in self.sinks:
-            sink.state(self.now_s(), text)
+        """Tells every sink, unless they know already."""
+        if text != self._state:
+            self._state = text
+            for sink in self.sinks:
+                sink.state(self.now_s(), text)
 
     def _play(self, step: Step, index: int, drive: Drive, ticker: Ticker, where: tuple[float, float, str]) -> None:
         """One step, tick by tick, to its end, until the valve has settled, or until somebody wants to stop."""
@@ -175,6 +183,7 @@ class Loop:
             lateness_s=ticker.lateness_s,
             step=index,
             target_in=target_in,
+            aux=self.aux,
         )
         for sink in self.sinks:
             sink.append(row)

@@ -7,7 +7,7 @@ goes out with them (docs/architecture.md, "Time and commands in a record").
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from hal.bench import BenchInfo
 from hal.sample import Quality, Reading, Sample
@@ -32,7 +32,15 @@ def columns_of(info: BenchInfo, *, closed_loop: bool, aux_units: Mapping[str, st
 
 
 def row_of(
-    sample: Sample, *, unit: str, origin_s: float, in_force: float, lateness_s: float, step: int, target_in: float
+    sample: Sample,
+    *,
+    unit: str,
+    origin_s: float,
+    in_force: float,
+    lateness_s: float,
+    step: int,
+    target_in: float,
+    aux: Sequence[str] = (),
 ) -> dict[str, float]:
     """The row of one sample; `in_force` is the command that held until now. Columns that do not apply are left out."""
     position = sample.position
@@ -53,8 +61,9 @@ def row_of(
         row["sequence"] = float(sample.sequence)
     if not math.isnan(target_in):
         row["target_in"] = target_in
-    for name, reading in sample.aux.items():
-        row.setdefault(name, reading.value)
+    for name in aux:
+        if name in sample.aux:
+            row[name] = sample.aux[name].value
     return row
 
 

@@ -1,4 +1,4 @@
-"""Whatever way a run ends: first the safe command, then the record says which way it was and whether it was confirmed."""
+"""However a run ends: first the safe command, then the record says which way, and whether it was confirmed."""
 
 from __future__ import annotations
 
@@ -47,4 +47,5 @@ def _end(loop: Loop, record: Record, status: Literal["success", "abort", "fail"]
     else:
         safe = f"the safe command, {command}, was NOT confirmed: check the valve"
     loop.say("info" if confirmed else "error", f"{reason}; {safe}")
+    loop.say_state("safe" if confirmed else "fault")
     record.close(status, f"{reason}; {safe}")
