@@ -1,0 +1,232 @@
+"""The actuator: needle, diaphragm chamber with moving volume, spring, stops and the balance of forces on the stem."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from sim_device.physics.chance import PHASE, TELEGRAPH, uniform
+from sim_device.physics.imperfection import Imperfection
+from sim_device.physics.jit import compiled
+from sim_device.physics.reference.air import flow
+from sim_device.physics.reference.packing import bristles, settle_bristles, soft_rings
+from sim_device.physics.reference.record import AREA, ATMOSPHERE, GAS, INCH, PSI
+
+IMPERFECTIONS = (
+    Imperfection(
+        "nonlinear_spring",
+        "actuator",
+        "1",
+        (0.03, 0.1, 0.3),
+        "A progressive spring: its rate is `size` times lower at the open end and higher at the closed end.",
+        limit=0.9,
+        signed=True,
+    ),
+    Imperfection(
+        "asymmetric_damping",
+        "actuator",
+        "1",
+        (0.1, 0.3, 1.0),
+        "The check valve beside the needle leaks: exhausting the chamber has (1 + size) times the conductance.",
+        limit=20.0,
+    ),
+    Imperfection(
+        "friction_in_motion",
+        "actuator",
+        "1",
+        (0.1, 0.3, 0.9),
+        "This share of the needle's resistance is taken out and put into viscous drag of the stem instead.",
+        limit=0.95,
+    ),
+    Imperfection(
+        "creep",
+        "actuator",
+        "1",
+        (0.02, 0.06, 0.2),
+        "Rubber in the diaphragm carries `size` of the spring rate at first and lets go with 10 s and 70 s.",
+        limit=2.0,
+    ),
+    Imperfection(
+        "reduced_travel",
+        "actuator",
+        "in",
+        (0.008, 0.025, 0.08),
+        "The closed stop (or the open one) stands `size` inside the travel.",
+        forms=("closed", "open"),
+        limit=0.4,
+    ),
+    Imperfection(
+        "additional_lag",
+        "actuator",
+        "l",
+        (0.3, 1.0, 3.0),
+        "A damping tank of `size` litres in the middle of the needle line.",
+        limit=30.0,
+    ),
+    Imperfection(
+        "flow_force",
+        "actuator",
+        "psi",
+        (2.0, 6.0, 20.0),
+        "Oil with a pressure drop of `size` across a plug of 1.5 in2 pushes it open, most at half opening.",
+        limit=100.0,
+        signed=True,
+    ),
+    Imperfection(
+        "thermal_spring",
+        "actuator",
+        "1",
+        (0.02, 0.06, 0.2),
+        "The hot valve body heats the spring and its rate breathes by `size` every 170 s.",
+        limit=0.5,
+        outsider=True,
+    ),
+    Imperfection(
+        "diaphragm_hole",
+        "actuator",
+        "mm2",
+        (0.02, 0.06, 0.2),
+        "A torn diaphragm leaks through `size` when fully stretched and through nothing when the valve is open.",
+        limit=5.0,
+        outsider=True,
+    ),
+    Imperfection(
+        "snap_region",
+        "actuator",
+        "psi",
+        (0.15, 0.4, 1.0),
+        "A buckled spring seat gives way by `size` around mid-travel, faster than the spring stiffens.",
+        limit=3.0,
+        outsider=True,
+    ),
+    Imperfection(
+        "water_slug",
+        "actuator",
+        "1",
+        (0.05, 0.15, 0.45),
+        "Water in the tubing nearly blocks the needle for 7 s; `size` is the chance of it in every 14 s.",
+        limit=0.9,
+        outsider=True,
+    ),
+)
+
+_RELAX_S = (10.0, 70.0)
+_HEATING_S = 170.0
+_PLUG_M2 = 1.5 * INCH * INCH
+
+
+@compiled
+def _needle(q: Any, s: Any, upstream: float, downstream: float, times: float) -> float:
+    """Mass flow through the needle (or `times` its conductance) from one gauge pressure to another [Pa]; kg/s."""
+    conductance = q.needle * times / (1.0 - q.friction_in_motion)
+    if upstream < downstream:
+        conductance *= 1.0 + q.asymmetric_damping
+    if q.water_slug > 0.0:
+        window = int(s.time / 14.0)
+        if uniform(s.seed, TELEGRAPH, 1000 + window) < q.water_slug and s.time - 14.0 * window < 7.0:
+            conductance *= 0.03
+    return flow(conductance, q.needle_b, q.needle_laminar, upstream + ATMOSPHERE, downstream + ATMOSPHERE)
+
+
+@compiled
+def _hole(q: Any, s: Any) -> float:
+    """Mass flow through the torn diaphragm to the room [kg/s]."""
+    share = min(max(s.x / q.travel, 0.0), 1.0)
+    # Gidlund's rule for the sonic conductance of an orifice of diameter d: C = 0.128 d^2 l/(s bar), d in mm
+    conductance = 0.128 * 4.0 / math.pi * q.diaphragm_hole * share * 1.0e-8
+    return flow(conductance, 0.4, 0.999, s.chamber + ATMOSPHERE, ATMOSPHERE)
+
+
+@compiled
+def fill(q: Any, s: Any, booster: float, booster_slope: float, h: float) -> None:
+    """Advances line, damping tank and chamber by `h` seconds, given the booster's flow and its slope."""
+    stiffness = q.polytropic * GAS
+    if q.additional_lag > 0.0:
+        into_tank = _needle(q, s, s.line, s.tank, 2.0)
+        into_chamber = _needle(q, s, s.tank, s.chamber, 2.0)
+        s.tank += h * stiffness * (into_tank - into_chamber) / (1.0e-3 * q.additional_lag)
+        leaves_line = into_tank
+    else:
+        into_chamber = _needle(q, s, s.line, s.chamber, 1.0)
+        leaves_line = into_chamber
+    gain = h * stiffness / q.line_volume
+    s.line += gain * (booster - leaves_line) / (1.0 - gain * booster_slope)
+    if q.diaphragm_hole > 0.0:
+        into_chamber -= _hole(q, s)
+    volume = q.chamber_volume + AREA * s.x
+    squeeze = q.polytropic * (s.chamber + ATMOSPHERE) * AREA * s.v
+    s.chamber += h * (stiffness * into_chamber - squeeze) / volume
+
+
+@compiled
+def _spring_rate(q: Any, s: Any) -> float:
+    rate = q.spring
+    if q.thermal_spring > 0.0:
+        rate *= 1.0 + q.thermal_spring * math.sin(2.0 * math.pi * (s.time / _HEATING_S + uniform(s.seed, PHASE, 2)))
+    return float(rate)
+
+
+@compiled
+def _spring_force(q: Any, s: Any) -> float:
+    share = s.x / q.travel
+    # the integral of a rate that goes from (1 - size) to (1 + size) over the stroke
+    force = q.preload + _spring_rate(q, s) * s.x * (1.0 - q.nonlinear_spring * (1.0 - share))
+    if q.snap_region > 0.0:
+        force -= q.snap_region * PSI * AREA * (0.5 + 0.5 * math.tanh((share - 0.5) / 0.06))
+    return float(force)
+
+
+@compiled
+def _fluid_force(q: Any, s: Any) -> float:
+    opening = min(max(1.0 - s.x / q.travel, 0.0), 1.0)
+    return float(q.flow_force * PSI * _PLUG_M2 * 4.0 * opening * (1.0 - opening))
+
+
+@compiled
+def _relaxing(q: Any, s: Any, v: float, h: float) -> float:
+    total = 0.0
+    for index in range(2):
+        s.relax[index] += h * (0.5 * q.creep * q.spring * v - s.relax[index] / _RELAX_S[index])
+        total += s.relax[index]
+    return total
+
+
+@compiled
+def _contact(q: Any, s: Any, h: float) -> tuple[float, float]:
+    """Force of the end stops as `force + slope * v` in the speed at the end of the step."""
+    low = q.reduced_travel * INCH if q.reduced_travel_form == 1 else 0.0
+    high = q.travel - (q.reduced_travel * INCH if q.reduced_travel_form == 0 else 0.0)
+    depth = s.x - high if s.x > high else min(s.x - low, 0.0)
+    if depth == 0.0:
+        return 0.0, 0.0
+    return float(q.stop_stiffness * depth), float(q.stop_stiffness * h + q.stop_damping)
+
+
+@compiled
+def push(q: Any, s: Any, h: float) -> None:
+    """Moves the stem by `h` seconds: all stiff forces are linear in the new speed, which is then solved for."""
+    area = AREA * (1.0 - q.area_loss * s.x / q.travel)
+    drive = s.chamber * area - _spring_force(q, s) - _fluid_force(q, s)
+    if q.creep > 0.0:
+        drive -= _relaxing(q, s, s.v, h)
+    if q.distributed_hysteresis > 0.0:
+        drive -= soft_rings(q, s, s.v, h)
+    grip, grip_slope = bristles(q, s, h)
+    stop, stop_slope = _contact(q, s, h)
+    gas = q.polytropic * (s.chamber + ATMOSPHERE) * area * area / (q.chamber_volume + AREA * s.x)
+    drag = q.friction_in_motion * _needle_drag(q)
+    slope = grip_slope + stop_slope + drag + h * (q.spring + gas)
+    v = (q.mass * s.v / h + drive - grip - stop) / (q.mass / h + slope)
+    settle_bristles(q, s, v, h)
+    s.v = v
+    s.x += h * v
+
+
+@compiled
+def _needle_drag(q: Any) -> float:
+    """The viscous drag that the needle amounts to for slow motion around mid-pressure [N s/m]."""
+    upstream = ATMOSPHERE + 9.0 * PSI
+    drop = 0.2 * PSI
+    mass_flow = flow(q.needle, q.needle_b, q.needle_laminar, upstream, upstream - drop)
+    return float(AREA * drop / (mass_flow * GAS / upstream / AREA))
+
