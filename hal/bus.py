@@ -12,9 +12,8 @@ from dataclasses import dataclass, field
 
 from hal.device import Device
 from hal.errors import WireFault
-from hal.line import RtuLine
 from hal.pdu import Request, echo, read_registers
-from hal.reply import Reply, check_refusal
+from hal.reply import Line, Reply, check_refusal
 from hal.stats import BusStats
 
 _MOST_OWED = 4  # an answer that is overdue by more probes than this will not come any more
@@ -34,7 +33,7 @@ class Trust:
 class RtuBus:
     """Requests to the units of one RTU line. `margin_s`: how much longer than the wire and the device need we wait."""
 
-    def __init__(self, line: RtuLine, devices: tuple[Device, ...], *, margin_s: float = 0.25) -> None:
+    def __init__(self, line: Line, devices: tuple[Device, ...], *, margin_s: float = 0.25) -> None:
         self._line = line
         self._units = {device.id: Trust(device) for device in devices}
         self._margin_s = margin_s

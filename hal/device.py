@@ -79,6 +79,7 @@ class Device(Part):
     word_order: WordOrder = "ABCD"
     turnaround_ms: Annotated[float, Field(ge=0, le=1000)] = 5.0
     max_read: Annotated[int, Field(ge=1, le=125)] = 125
+    read_gap: Annotated[int, Field(ge=0, le=100)] = 0  # unused registers a read may run over; most devices refuse any
     identity: Identity | None = None
     resync: Resync = Resync()
     watchdog: Watchdog | None = None

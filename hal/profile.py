@@ -139,6 +139,10 @@ class Profile(Part):
                     found[f"devices.{name}.watchdog.{key}"] = self._placed(register, name)
         return found
 
+    def placed(self, register: Register, beside: Register) -> Register:
+        """`register` on the device of `beside`, where it does not say so itself."""
+        return self._placed(register, self.device_name(beside))
+
     @staticmethod
     def _placed(register: Register, device: str) -> Register:
         return register if register.device else register.model_copy(update={"device": device})

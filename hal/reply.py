@@ -7,6 +7,7 @@ from typing import Protocol
 
 from hal.errors import DeviceRefused
 from hal.pdu import EXCEPTIONS, Request, words_of
+from hal.profile import Serial
 from hal.stats import BusStats
 
 
@@ -37,6 +38,29 @@ class Reply:
     @property
     def refused(self) -> bool:
         return self.pdu[0] >= 0x80
+
+
+class Line(Protocol):
+    """One question at a time; whether the answer can be trusted is decided by the bus above."""
+
+    stats: BusStats
+    local_echo: bool | None  # whether we hear ourselves; None: not known yet
+    name: str
+    serial: Serial
+
+    def open(self) -> None:
+        """Raises: `PortFault`."""
+
+    def close(self) -> None: ...
+
+    def ask(self, request: Request, timeout_s: float) -> Reply:
+        """Raises: `WireFault` when no answer of exactly the right shape came in time."""
+
+    def strays(self) -> int:
+        """Takes what has arrived unasked, and tells how many bytes it was."""
+
+    def settle(self, limit_s: float) -> int:
+        """Listens until the line is quiet; returns the number of bytes that came meanwhile. Raises: `WireFault`."""
 
 
 class Bus(Protocol):

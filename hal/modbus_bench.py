@@ -1,0 +1,225 @@
+"""A bench on Modbus: one transaction a tick where the device can, and every reading with its own time and quality."""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from types import TracebackType
+from typing import Self
+
+from hal.assemble import NO_VALUE, Replies, assemble
+from hal.bench import BenchInfo
+from hal.clock import Clock
+from hal.connect import make_bus
+from hal.errors import BadInput, DeviceRefused, LostMotionError, SafetyTrip, WireFault
+from hal.freshness import Freshness
+from hal.identity import check_identity
+from hal.pdu import Request
+from hal.profile import Profile
+from hal.reply import Bus, Reply
+from hal.sample import Quality, Sample
+from hal.tick import min_period_s, plan_tick
+from hal.watchdog import WatchdogControl
+
+_BUSY = (5, 6)  # exceptions that ask for patience; the next tick asks again
+_MISMATCHES = 3  # ticks in a row in which the device may hold another command than the one it was sent
+_SAFE_TRIES = 3
+
+
+class ModbusBench:
+    """The bench of a profile at a port. Nothing is opened before `with`, nothing written before it is known to be ours.
+
+    `margin_s`: how much longer than wire and device need an answer may take [s]. `pacing` overrides the profile's.
+    `acknowledge`: a person has looked at the valve; a device that has taken over is given back to us.
+    `read_only`: nothing is ever written, on entering and leaving neither; only `observe` works.
+    A tick without a trusted answer is a sample whose readings are `MISSING`; the safety layer counts them.
+    """
+
+    def __init__(
+        self,
+        profile: Profile,
+        port: str,
+        clock: Clock,
+        *,
+        backend: str = "native",
+        margin_s: float = 0.25,
+        pacing: str | None = None,
+        acknowledge: bool = False,
+        read_only: bool = False,
+        bus: Bus | None = None,
+    ) -> None:
+        if pacing is not None:
+            serial = profile.serial.model_copy(update={"pacing": pacing})
+            profile = profile.model_copy(update={"serial": serial})
+        self.profile = profile
+        self.bus = bus or make_bus(profile, port, clock, backend=backend, margin_s=margin_s)
+        self._port = port
+        self._clock = clock
+        self._acknowledge = acknowledge
+        self._read_only = read_only
+        self._plan = plan_tick(profile)
+        self._watchdog = WatchdogControl(self.bus, self._plan.device)
+        self._freshness = Freshness()
+        self._lock = threading.RLock()  # the dead man's thread may send the valve to safety in the middle of a tick
+        self._identity: dict[str, str] = {}
+        self._mismatches = 0
+        self._open = False
+
+    @property
+    def info(self) -> BenchInfo:
+        profile, limits = self.profile, self.profile.limits
+        return BenchInfo(
+            name=profile.name,
+            port=self._port,
+            command_unit=profile.command_unit,
+            command_min=limits.command_min,
+            command_max=limits.command_max,
+            safe_command=profile.safe_command,
+            travel_in=profile.travel_in,
+            min_period_s=min_period_s(self._plan, profile),
+            has_pressure=profile.signals.pressure is not None,
+            identity=self._identity,
+            profile=profile.model_dump(mode="json", exclude_none=True),
+        )
+
+    def __enter__(self) -> Self:
+        self.bus.open()
+        self._open = True
+        try:
+            self._start()
+        except BaseException:
+            self._close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        try:
+            if not self._read_only and self.make_safe("the bench is left"):
+                self._quietly(self._watchdog.let_go)
+        finally:
+            self._close()
+
+    def _start(self) -> None:
+        for device in self.profile.devices.values():
+            self._identity |= check_identity(self.bus, device, self._port)
+        self.observe(strict=True)  # proves that every signal can be read, before the first command
+        if self._read_only:
+            return
+        if self._watchdog.tripped():
+            if not self._acknowledge:
+                raise SafetyTrip(
+                    f"the device on {self._port} has put its output to the safe value and ignores commands; "
+                    "look at the valve, then give it back with `lostmotion set --acknowledge`"
+                )
+            self._watchdog.clear()
+        self._watchdog.arm(self.profile.safe_command)
+
+    def _close(self) -> None:
+        self._open = False
+        self.bus.close()
+
+    def exchange(self, command_psi: float) -> Sample:
+        """Writes one command and reads everything. Raises: `BadInput` for a command that is no number."""
+        if self._read_only:
+            raise BadInput(f"the bench on {self._port} was opened for reading only")
+        if not math.isfinite(command_psi):
+            raise BadInput(f"command {command_psi} is not a number that a valve can be given")
+        words = self._plan.command.to_words(command_psi, self._plan.device.word_order)
+        commanded = self._plan.command.value(self._plan.command.counts(words, self._plan.device.word_order))
+        with self._lock:
+            began_s = self._clock.now_s()
+            blocks = self._plan.blocks
+            written = self._try(self._plan.write_request(words))
+            replies: Replies = []
+            if self._plan.joint is not None:
+                replies.append((self._plan.joint, written))
+            # Without a confirmed command nobody knows what the readings answer to: the tick is missing as a whole.
+            replies += [(block, self._try(block.request()) if written else None) for block in blocks]
+            sample = assemble(commanded, written.midpoint_s if written else began_s, replies, self._freshness)
+            self._check(sample)
+            return sample
+
+    def observe(self, *, strict: bool = False) -> Sample:
+        """Reads everything and writes nothing; `commanded_psi` is the read-back, NaN where there is none.
+
+        Raises: with `strict`, `WireFault` or `DeviceRefused` when a signal cannot be read.
+        """
+        with self._lock:
+            began_s = self._clock.now_s()
+            replies: Replies = []
+            for block in self._plan.every_block():
+                ask = block.request()
+                replies.append((block, self.bus.transact(ask, retries=2) if strict else self._try(ask)))
+            return assemble(None, began_s, replies, self._freshness)
+
+    def make_safe(self, reason: str) -> bool:
+        """Sends the safe command, up to three times; True when the device confirmed it.
+
+        With the safe direction `hold` the valve is left where it is. Never raises.
+        """
+        if self.profile.safe_direction == "hold":
+            return self._open
+        return any(self._open and self._quietly(self._send_safe) for _ in range(_SAFE_TRIES))
+
+    def emergency_stop(self) -> bool:
+        """Makes the device itself put out its safe value and ignore us, where it can; else the safe command."""
+        with self._lock:
+            taken_over = self._quietly(self._watchdog.emergency)
+            return self.make_safe("emergency stop") or taken_over
+
+    def _send_safe(self) -> bool:
+        words = self._plan.command.to_words(self.profile.safe_command, self._plan.device.word_order)
+        with self._lock:
+            self.bus.transact(self._plan.write_request(words), retries=1)
+            readback = self.observe().readback_psi
+        if self.profile.signals.readback is None:
+            return True
+        return readback is not None and abs(readback - self.profile.safe_command) <= self._tolerance()
+
+    def _quietly(self, action: Callable[[], bool | None]) -> bool:
+        """On the way out a fault must not hide the reason for leaving, nor keep the port open."""
+        try:
+            return action() is not False
+        except (LostMotionError, OSError):
+            return False
+
+    def _try(self, request: Request) -> Reply | None:
+        try:
+            return self.bus.transact(request)
+        except WireFault:
+            return None
+        except DeviceRefused as error:
+            if error.code in _BUSY:
+                return None
+            raise
+
+    def _check(self, sample: Sample) -> None:
+        """What the device said besides the measurement. Raises: `SafetyTrip`."""
+        status = sample.aux.get("watchdog_status")
+        if status is not None and not status.quality & NO_VALUE and status.value != 0:
+            raise SafetyTrip(
+                f"the device on {self._port} has put its output to the safe value (status {status.value:g}): it heard "
+                "nothing for too long, or an emergency stop; look at the valve, then `lostmotion set --acknowledge`"
+            )
+        if sample.position.quality & Quality.RESTARTED:
+            self._watchdog.arm(self.profile.safe_command)  # a restart has made it forget
+        if sample.readback_psi is None:
+            return
+        wrong = abs(sample.readback_psi - sample.commanded_psi) > self._tolerance()
+        self._mismatches = self._mismatches + 1 if wrong else 0
+        if self._mismatches >= _MISMATCHES:
+            unit = self.profile.command_unit
+            raise SafetyTrip(
+                f"the device on {self._port} was sent {sample.commanded_psi:.4g} {unit} and holds "
+                f"{sample.readback_psi:.4g} {unit}, {_MISMATCHES} ticks in a row: does somebody else command it?"
+            )
+
+    def _tolerance(self) -> float:
+        if self.profile.readback_tolerance is not None:
+            return self.profile.readback_tolerance
+        limits, readback = self.profile.limits, self.profile.signals.readback
+        counts = max(self._plan.command.resolution(), readback.resolution() if readback else 0.0)
+        return 2.0 * counts + 1e-6 * (limits.command_max - limits.command_min)
