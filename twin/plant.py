@@ -101,8 +101,9 @@ def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]
     """The two curves as tables over a uniform pressure grid: (first pressure, step, closing, opening)."""
     d = c.design
     k1, k2 = d.compliance * c.close_gain, d.compliance * c.open_gain
-    if not c.close_shift.any() and not c.open_shift.any():
-        return 0.0, 1.0, k1 * (np.arange(2.0) - d.a1), k2 * (np.arange(2.0) - d.a2)
+    if np.ptp(c.close_shift) == 0.0 and np.ptp(c.open_shift) == 0.0:
+        a1, a2 = d.a1 + c.close_shift[0], d.a2 + c.open_shift[0]
+        return 0.0, 1.0, k1 * (np.arange(2.0) - a1), k2 * (np.arange(2.0) - a2)
     w = np.linspace(-0.5, 1.5, 2 * GRID - 1)
     close_shift = np.interp(w, c.xi, c.close_shift)
     open_shift = np.interp(w, c.xi, c.open_shift)

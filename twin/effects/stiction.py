@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import FOREVER, V_BREAKAWAY, V_STICK_SPEED
+from twin.slots import FOREVER, V_BREAKAWAY, V_STICK_SPEED, V_STRIBECK, V_STRIBECK_SPEED
 
 _BREAKAWAY = Parameter(
     name="breakaway",
@@ -31,6 +31,19 @@ _STICK_SPEED = Parameter(
 )
 
 
+_FALL_SPEED = Parameter(
+    name="fall_speed",
+    kind="position_rate",
+    lower=1e-4,
+    upper=0.1,
+    starts=(2e-3, 1e-2),
+    scale=1e-2,
+    doc="speed at which the extra friction has fallen to 1/e",
+    neutral=1e-2,
+    size=False,
+)
+
+
 def _slip_until_slow(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_BREAKAWAY] = values[0]
     c.valve[V_STICK_SPEED] = values[1]
@@ -41,15 +54,23 @@ def _one_jump(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_STICK_SPEED] = FOREVER
 
 
+def _falling(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_STRIBECK] = values[0]
+    c.valve[V_STRIBECK_SPEED] = values[1]
+
+
 EFFECT = Effect(
     name="stiction",
     stage="actuator",
     claim="The stem sticks until the pressure exceeds sliding friction by the breakaway, then slips.",
-    equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed",
-    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503",
+    equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed; "
+    "falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503; "
+    "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck)",
     forms=(
         Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
         Form("one_jump", (_BREAKAWAY,), _one_jump),
+        Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),
 )

@@ -24,39 +24,45 @@ from twin.slots import (
     V_WEAR,
 )
 
+#: First pressure, step, closing and opening curve; and the spreads and weights of the elements.
+Tables = tuple[float, float, FloatArray, FloatArray]
+Plays = tuple[FloatArray, FloatArray]
+
+_SAME = 1e-9
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
     """Linear interpolation in a uniform table, extended by its end slopes."""
     q = (p - p_first) / p_step
     i = min(max(int(q), 0), table.size - 2)
-    return table[i] + (q - i) * (table[i + 1] - table[i])
+    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
+    return value
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _ramp_lag(x: float, w_a: float, w_b: float, h: float, tau_s: float) -> float:
-    """Exact step of tau x' = w - x for w linear from w_a to w_b over h seconds."""
-    if tau_s <= 1e-9:
-        return w_b
-    slope_tau = (w_b - w_a) / h * tau_s
-    return w_b - slope_tau + (x - w_a + slope_tau) * np.exp(-h / tau_s)
+def _decays(h: float, c: FloatArray, lags: FloatArray) -> None:
+    """Fills `lags` (shape (3, 2)): decay over `h` and tau / h, of the lags closing, opening and after the play."""
+    for k, slot in enumerate((V_TAU_CLOSE_S, V_TAU_OPEN_S, V_TAU_AFTER_S)):
+        lags[k, 0] = np.exp(-h / c[slot]) if c[slot] > 1e-9 else 0.0
+        lags[k, 1] = c[slot] / h if c[slot] > 1e-9 else 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _toward(x: float, w_a: float, w_b: float, lag: FloatArray) -> float:
+    """Exact step of a lag for an input linear from w_a to w_b."""
+    slope_tau = (w_b - w_a) * lag[1]
+    new: float = w_b - slope_tau + (x - w_a + slope_tau) * lag[0]
+    return new
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _play_step(
-    q: float,
-    grown: float,
-    extra: float,
-    stops: FloatArray,
-    p_first: float,
-    p_step: float,
-    closing: FloatArray,
-    opening: FloatArray,
-    spreads: FloatArray,
-    weights: FloatArray,
-    elements: FloatArray,
+    q: float, grown: float, extra: float, stops: FloatArray, tables: Tables, plays: Plays, elements: FloatArray
 ) -> tuple[float, bool]:
     """Moves the elements to pressure `q`; those that `extra` holds stay. Returns their sum and whether any slipped."""
+    p_first, p_step, closing, opening = tables
+    spreads, weights = plays
     w = 0.0
     slipped = False
     for j in range(spreads.size):
@@ -78,11 +84,12 @@ def _play_step(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _stem_step(x: float, w_a: float, w_b: float, h: float, c: FloatArray, low: float, high: float) -> float:
-    """One step of the stem toward a target that goes from w_a to w_b."""
-    tau_s = c[V_TAU_CLOSE_S] if w_a + w_b > 2.0 * x else c[V_TAU_OPEN_S]
-    new = _ramp_lag(x, w_a, w_b, h, tau_s)
-    return max(low, min(high, max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))))
+def _half_band(wide: float, travelled: float, speed: float, c: FloatArray) -> float:
+    """What is added to the half deadband now: what time added, wear, and friction that falls with speed."""
+    grown: float = wide + c[V_WEAR] * travelled
+    if c[V_STRIBECK] > 0.0:
+        grown += c[V_STRIBECK] * np.exp(-speed / c[V_STRIBECK_SPEED])
+    return grown
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -93,37 +100,33 @@ def coupled_pass(
     widening: FloatArray,
     c: FloatArray,
     stops: FloatArray,
-    p_first: float,
-    p_step: float,
-    closing: FloatArray,
-    opening: FloatArray,
-    spreads: FloatArray,
-    weights: FloatArray,
-    x0: float,
-    w0: float,
+    tables: Tables,
+    plays: Plays,
+    start: tuple[float, float],
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem. `stops` is (low, high) of the play output, then of the stem."""
-    elements = np.full(spreads.size, w0)
-    w, _ = _play_step(force[0], widening[0], 0.0, stops, p_first, p_step, closing, opening, spreads, weights, elements)
-    x = max(stops[2], min(stops[3], x0))
-    after = w
-    stuck, travelled, speed = True, 0.0, 0.0
+    """Fills `out` (fine) with the stem. `stops`: (low, high) of the play output, then of the stem; `start`: (x, w)."""
+    elements = np.full(plays[0].size, start[1])
+    w, _ = _play_step(force[0], widening[0], 0.0, stops, tables, plays, elements)
+    x = max(stops[2], min(stops[3], start[0]))
     out[0] = x
+    after, stuck, travelled, speed, last_h = w, True, 0.0, 0.0, -1.0
+    lags = np.zeros((3, 2))
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        if abs(h - last_h) > _SAME * h:
+            last_h = h
+            _decays(h, c, lags)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            grown = widening[f if widening.size > 1 else 0] + c[V_WEAR] * travelled
-            if c[V_STRIBECK] > 0.0:
-                grown += c[V_STRIBECK] * np.exp(-speed / c[V_STRIBECK_SPEED])
+            grown = _half_band(widening[f if widening.size > 1 else 0], travelled, speed, c)
             if c[V_IN_MOTION] != 0.0:
                 elements += c[V_IN_MOTION] * (x - w)
             extra = c[V_BREAKAWAY] if stuck else 0.0
-            new_w, slipped = _play_step(
-                force[f], grown, extra, stops, p_first, p_step, closing, opening, spreads, weights, elements
-            )
-            new_after = _ramp_lag(after, w, new_w, h, c[V_TAU_AFTER_S])
-            new = _stem_step(x, after, new_after, h, c, stops[2], stops[3])
+            new_w, slipped = _play_step(force[f], grown, extra, stops, tables, plays, elements)
+            new_after = _toward(after, w, new_w, lags[2])
+            new = _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1])
+            new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
+            new = max(stops[2], min(stops[3], new))
             speed = abs(new - x) / h
             stuck = (stuck and not slipped) or speed < c[V_STICK_SPEED]
             travelled += abs(new - x)

@@ -132,7 +132,8 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     new = goal if tau_s <= 0.0 else goal + (p - goal) * np.exp(-h / tau_s)
     if mode == 4.0:
         new = min(new, v - c[EP_BAND]) if v > p else max(new, v + c[EP_BAND])
-    return max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new))
+    bounded: float = max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new))
+    return bounded
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

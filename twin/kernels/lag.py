@@ -31,6 +31,22 @@ def lag_pass(time_s: FloatArray, offsets: np.ndarray, values: FloatArray, tau_s:
             out[f] = y
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _fine_time(time_s: FloatArray, offsets: np.ndarray, out: FloatArray) -> None:
+    out[0] = 0.0
+    for i in range(1, time_s.size):
+        h = (time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1])
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            out[f] = time_s[i - 1] - time_s[0] + (f - offsets[i - 1]) * h
+
+
+def elapsed_s(time_s: FloatArray, offsets: np.ndarray) -> FloatArray:
+    """Seconds since the first row at every fine point, shape (n_fine,)."""
+    out = np.empty(int(offsets[-1]) + 1)
+    _fine_time(time_s, offsets, out)
+    return out
+
+
 def lagged(time_s: FloatArray, offsets: np.ndarray, values: FloatArray, tau_s: float) -> FloatArray:
     """`values` on the fine grid through a lag of `tau_s` [s]; a lag of none returns them as they are."""
     if tau_s <= 1e-9:

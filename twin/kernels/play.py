@@ -43,7 +43,8 @@ def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> floa
     """Linear interpolation in a uniform table, extended by its end slopes."""
     q = (p - p_first) / p_step
     i = min(max(int(q), 0), table.size - 2)
-    return table[i] + (q - i) * (table[i + 1] - table[i])
+    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
+    return value
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

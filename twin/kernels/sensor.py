@@ -9,7 +9,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.kernels.lag import lagged
+from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import plain_play
 from twin.slots import (
     S_BOW,
@@ -35,7 +35,7 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
         core = np.empty_like(stem)
         plain_play(stem, 0.5 * c[S_PLAY], stem[0], core)
     if c[S_LAG_S] > 0.0:
-        t = np.interp(np.arange(stem.size), offsets, time_s - time_s[0])
+        t = elapsed_s(time_s, offsets)
         out[:] = lagged(time_s, offsets, _curve(core, t, c), c[S_LAG_S])[offsets]
     else:
         out[:] = _curve(core[offsets], time_s - time_s[0], c)

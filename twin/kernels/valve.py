@@ -10,7 +10,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.coupled import coupled_pass
-from twin.kernels.lag import lagged
+from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.slots import (
@@ -66,11 +66,12 @@ def valve_kernel(
     """Fills `out` with the stem position. `spreads[j]` widens the half deadband of play element j [pressure]."""
     force = _force(time_s, offsets, pressure, c, w0)
     widening = _widening(time_s, offsets, c)
-    tables = (p_first, p_step, closing, opening)
+    tables = (float(p_first), float(p_step), closing, opening)
     stem_low, stem_high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
     if c[_COUPLING].any():
         stops = np.array([c[V_LOW], c[V_HIGH], stem_low, stem_high])
-        coupled_pass(time_s, offsets, force, widening, c, stops, *tables, spreads, weights, x0, w0, out)
+        plays, start = (spreads, weights), (float(x0), float(w0))
+        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, start, out)
     else:
         target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, spreads, weights, w0)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
@@ -99,9 +100,12 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
     """
     if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
         return np.array([-c[V_OUTER]])
-    t = np.interp(np.arange(offsets[-1] + 1), offsets, time_s - time_s[0])
-    grown = c[V_DRIFT_RATE] * t - c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
-    widening: FloatArray = grown + np.where(t >= c[V_STEP_TIME_S], c[V_STEP], 0.0) - c[V_OUTER]
+    t = elapsed_s(time_s, offsets)
+    widening = c[V_DRIFT_RATE] * t - c[V_OUTER]
+    if c[V_DRIFT_AMP] != 0.0:
+        widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
+    if c[V_STEP] != 0.0:
+        widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
     return widening
 
 
