@@ -101,7 +101,7 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
     if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
         return np.array([-c[V_OUTER]])
     t = elapsed_s(time_s, offsets)
-    widening = c[V_DRIFT_RATE] * t - c[V_OUTER]
+    widening: FloatArray = c[V_DRIFT_RATE] * t - c[V_OUTER]
     if c[V_DRIFT_AMP] != 0.0:
         widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
     if c[V_STEP] != 0.0:
