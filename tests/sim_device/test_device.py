@@ -85,7 +85,7 @@ def test_two_units_on_one_line_share_one_valve(wire) -> None:  # type: ignore[no
     assert wire.ask("05 04 00 40 00 01", 5) == "05 04 02 08 00"
     reply = bytes.fromhex(wire.ask("06 04 00 00 00 01", 5))
     assert int.from_bytes(reply[3:5], "big") == round(65535 * 0.090015 / 0.5)
-    assert wire.ask("06 04 00 02 00 02", 7) == "06 04 04 06 00 41 10"  # 3 + 12 * 2048 / 4095 = 9.001465 psi, words swapped
+    assert wire.ask("06 04 00 02 00 02", 7) == "06 04 04 06 00 41 10"  # 9.001465 psi, words swapped
 
 
 def test_a_unit_has_only_its_own_registers(wire) -> None:  # type: ignore[no-untyped-def]
