@@ -132,7 +132,8 @@ class Effect:
     """One claim about the valve.
 
     `evidence` says how the diagnosis recognises it: by the trajectory, or by events in the reading (drop-outs).
-    `twins` are effects with nearly the same signature (shown in confusion sets); `equations` and `source` are printed.
+    `odds` is how common it is on a bench,
+    relative to others. `twins` are effects with nearly the same signature; `equations` and `source` are printed.
     """
 
     name: str
@@ -143,6 +144,7 @@ class Effect:
     forms: tuple[Form, ...]
     evidence: Evidence = "trajectory"
     twins: tuple[str, ...] = ()
+    odds: float = 1.0
 
     def form(self, name: str) -> Form:
         """The form called `name`; raises KeyError naming the forms there are."""

@@ -20,8 +20,13 @@ from twin.slots import (
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     GRID,
+    S_BOW,
+    S_GAIN,
+    S_SWING,
     S_TRAVEL,
+    S_ZERO,
     V_HIGH,
+    V_LOW,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_TAU_CLOSE_S,
@@ -123,3 +128,15 @@ def effect_tables(inserted: Sequence[Inserted]) -> Mapping[str, Mapping[str, flo
         }
         for one in inserted
     }
+
+
+def stem_at(c: Coefficients, reading: float) -> float:
+    """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
+    s = c.sensor
+    x = (reading - s[S_ZERO]) / s[S_GAIN]
+    if s[S_BOW] != 0.0 or s[S_SWING] != 0.0:
+        for _ in range(4):  # the curve is a few percent: a fixed-point iteration settles at once
+            xi = x / s[S_TRAVEL]
+            bend = s[S_TRAVEL] * xi * (1.0 - xi) * (4.0 * s[S_BOW] + 10.4 * s[S_SWING] * (1.0 - 2.0 * xi))
+            x = (reading - s[S_ZERO]) / s[S_GAIN] - bend
+    return float(min(max(x, c.valve[V_LOW]), c.valve[V_HIGH]))

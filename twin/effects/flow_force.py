@@ -61,4 +61,5 @@ EFFECT = Effect(
         Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
+    odds=0.3,  # most benches are dry
 )

@@ -12,7 +12,8 @@ _SUPPLY = Parameter(
     kind="pressure",
     lower=3.0,
     upper=60.0,
-    starts=(8.0, 9.5, 10.5, 11.25, 12.0, 13.0, 14.5),
+    # Close together: a ceiling a little too low costs more than none, and one too high changes nothing.
+    starts=tuple(6.0 * 1.02**n for n in range(60)),
     scale=8.0,
     doc="highest pressure the supply gives",
     neutral=60.0,

@@ -1,0 +1,67 @@
+"""A case for diagnosis: recordings, the design they are held against, and what the readings' noise is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from control.design import DesignModel
+from logs.recording import Recording
+from twin.effect import Scales
+from twin.fit.trial import Trial, make_trial
+from twin.noise.model import NoiseModel, estimate_noise
+from twin.plant import Inserted, Plant
+
+#: Travel over compliance, and travel, of the thesis's valve: the units in which effects state their sizes.
+_REFERENCE_SPAN_PSI = 0.5625 / 0.19
+_REFERENCE_TRAVEL_IN = 0.5625
+#: Noise is never believed to be below this share of the span: numbers in a file have finite digits.
+_LEAST_NOISE = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """Everything a diagnosis starts from. `sigma_p` is None without a measured pressure."""
+
+    recordings: tuple[Recording, ...]
+    base: Plant
+    scales: Scales
+    noise: NoiseModel
+    sigma_y: float
+    sigma_p: float | None
+    trials: tuple[Trial, ...]
+
+    @property
+    def travel(self) -> float:
+        return self.base.design.travel
+
+
+def make_case(
+    recordings: Sequence[Recording],
+    design: DesignModel,
+    inserted: Sequence[Inserted] = (),
+    bad_rows: Sequence[npt.NDArray[np.bool_] | None] | None = None,
+) -> Case:
+    """Prepares recordings against a design; `inserted` are effects that the design already has."""
+    noise = estimate_noise(recordings)
+    span = design.travel / design.compliance
+    scales = Scales(
+        pressure=span / _REFERENCE_SPAN_PSI,
+        position=design.travel / _REFERENCE_TRAVEL_IN,
+        pressure_unit=design.pressure_unit,
+        position_unit=design.position_unit,
+    )
+    bad = bad_rows or [None] * len(recordings)
+    trials = tuple(make_trial(r, fine_step_s(design, r), b) for r, b in zip(recordings, bad, strict=True))
+    sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
+    sigma_y = max(noise.position.sigma, _LEAST_NOISE * design.travel)
+    return Case(tuple(recordings), Plant(design, tuple(inserted)), scales, noise, sigma_y, sigma_p, trials)
+
+
+def fine_step_s(design: DesignModel, recording: Recording) -> float:
+    """Step of the fine grid [s]: short against the lags, but no more than about 400,000 steps in all."""
+    wanted = min(0.1, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, 0.01))
+    return max(wanted, recording.duration_s / 400_000.0)

@@ -1,0 +1,77 @@
+"""From fitted hypotheses to accepted causes: the fewest causes that explain the gap, or the admission that none does.
+
+A further cause is accepted only if it is significant (tempered log-evidence), material (its share of the gap) and
+thorough (it removes most of what the smaller hypothesis left); a wrong form of the right cause leaves a rest, and a
+flexible bystander always finds something in that rest.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from twin.choose.score import score
+from twin.choose.search import Findings
+from twin.fit.fitting import Fit
+
+
+@dataclass(frozen=True, slots=True)
+class DecisionRules:
+    """Thresholds, chosen on the calibration bank and never on published blind trials (docs/calibration.md).
+
+    Gains are in units of the noise variance: 1 means as large as the noise itself.
+    """
+
+    gain: float = 0.05
+    evidence: float = 12.0
+    share: float = 0.02
+    thorough: float = 0.55
+    large_share: float = 0.2
+    unexplained: float = 0.5
+    quiet: float = 1.5
+
+
+@dataclass(frozen=True, slots=True)
+class Decision:
+    """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before."""
+
+    findings: Findings
+    accepted: Fit
+    explained: bool
+    gap: bool
+    rest: float
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return self.accepted.names if self.explained else ()
+
+
+def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Decision:
+    """Walks up from `none` and accepts larger hypotheses as long as they are worth it."""
+    accepted = findings.none
+    size = 0
+    while True:
+        # A pair may be needed before either of its members shows, so look two steps ahead as well.
+        bigger = [findings.best_of_size(size + k) for k in (1, 2)]
+        better = next((f for f in bigger if f is not None and _worth(findings, accepted, f, rules, floor)), None)
+        if better is None:
+            break
+        accepted = better
+        size = len(better.space.causes)
+    before = max(findings.none.mse - floor, 0.0)
+    rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
+    gap = size > 0 or findings.none.mse > rules.quiet * floor
+    explained = size > 0 and rest < rules.unexplained
+    return Decision(findings, accepted, explained, gap, rest)
+
+
+def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:
+    """Whether the larger hypothesis earns its further causes."""
+    rows = findings.channel.rows
+    gain = small.mse - large.mse
+    before = max(findings.none.mse - floor, 0.0)
+    left = max(small.mse - floor, 0.0)
+    significant = score(large, rows, findings.phi) - score(small, rows, findings.phi) > rules.evidence
+    material = gain > max(rules.gain, rules.share * before)
+    first = small is findings.none
+    thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
+    return significant and material and thorough

@@ -1,0 +1,143 @@
+"""The search over hypotheses on one channel: nothing, each cause alone, then pairs and triples of the promising ones.
+
+Every hypothesis is fitted together with the design numbers; hypotheses of one size are fitted side by side in threads
+(the kernels run without the interpreter's lock).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from twin.choose.candidates import effect_causes, number_causes
+from twin.choose.score import inflation, score
+from twin.effect import Scales
+from twin.fit.channel import Channel
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
+from twin.plant import Plant
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class SearchRules:
+    """How far the search goes. `beam`: hypotheses that are extended by one more cause; `most`: causes at the most."""
+
+    beam: int = 4
+    most: int = 3
+    rounds: int = 6
+    polish: int = 8
+    threads: int = 2
+    enough: float = 1.03  # a mean squared residual (noise = 1) that leaves nothing to explain
+
+
+@dataclass(frozen=True, slots=True)
+class Findings:
+    """All hypotheses fitted on a channel. `phi`: samples worth one independent sample."""
+
+    channel: Channel
+    none: Fit
+    retuned: Fit
+    fits: tuple[Fit, ...]
+    phi: float
+
+    def scored(self) -> list[tuple[float, Fit]]:
+        """All hypotheses with their scores, best first; `none` is among them."""
+        rows = self.channel.rows
+        pairs = [(score(f, rows, self.phi), f) for f in (self.none, *self.fits)]
+        return sorted(pairs, key=lambda pair: -pair[0])
+
+    def best_of_size(self, size: int) -> Fit | None:
+        """The hypothesis with `size` causes and the highest score, or None."""
+        same = [f for f in (self.none, *self.fits) if len(f.space.causes) == size]
+        return max(same, key=lambda f: score(f, self.channel.rows, self.phi)) if same else None
+
+
+@dataclass(slots=True)
+class Searcher:
+    """Fits hypotheses over a base plant on one channel."""
+
+    channel: Channel
+    base: Plant
+    scales: Scales
+    rules: SearchRules = field(default_factory=SearchRules)
+    progress: Progress = lambda _what, _share: None
+
+    def run(self) -> Findings:
+        """The whole search."""
+        none = fit(self.channel, make_space(self.base, (), (), self.scales), [np.zeros(0)])
+        space = make_space(self.base, (), self.channel.numbers, self.scales, ACCUSED_SPREAD)
+        retuned = fit(self.channel, space, starts_of(space), rounds=20)
+        found = self._singles()
+        level = list(found)
+        for size in range(2, self.rules.most + 1):
+            best = min(level, key=lambda f: f.mse, default=none)
+            if best.mse <= self.rules.enough:
+                break
+            level = self._extended(level, size)
+            found += level
+        everything = [none, *found]
+        best = min(everything, key=lambda f: f.mse)
+        phi = inflation(best.residuals, self.channel.use)
+        return Findings(self.channel, none, retuned, tuple(found), phi)
+
+    def _singles(self) -> list[Fit]:
+        causes = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
+        fits = self._fit_all([(c,) for c in causes], None, self.rules.rounds, "one cause")
+        fits = best_forms(fits, self.channel.rows)
+        return self._polished(fits)
+
+    def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
+        """Every hypothesis of the beam with one more cause."""
+        singles = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
+        fits: list[Fit] = []
+        seen: set[tuple[str, ...]] = set()
+        for parent in sorted(level, key=lambda f: f.mse)[: self.rules.beam]:
+            more = [c for c in singles if c.name not in parent.names]
+            more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
+            fits += self._fit_all(
+                [(*parent.space.causes, c) for c in more], parent, self.rules.rounds, f"{size} causes"
+            )
+            seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
+        return self._polished(best_forms(fits, self.channel.rows))
+
+    def _polished(self, fits: Sequence[Fit]) -> list[Fit]:
+        ranked = sorted(fits, key=lambda f: f.mse)
+        top, rest = ranked[: self.rules.polish], ranked[self.rules.polish :]
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            polished = pool.map(lambda f: fit(self.channel, f.space, [f.z], rounds=12), top)
+            return sorted([*polished, *rest], key=lambda f: f.mse)
+
+    def _fit_all(self, hypotheses: Iterable[tuple[Cause, ...]], known: Fit | None, rounds: int, what: str) -> list[Fit]:
+        todo = list(hypotheses)
+
+        def one(causes: tuple[Cause, ...]) -> Fit:
+            space = make_space(self.base, causes, self._numbers(causes), self.scales)
+            return fit(self.channel, space, starts_of(space, known), rounds=rounds)
+
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            fits = []
+            for done, result in enumerate(pool.map(one, todo), start=1):
+                self.progress(f"{self.channel.name}: {what}", done / len(todo))
+                fits.append(result)
+        return fits
+
+    def _numbers(self, causes: Sequence[Cause]) -> tuple[str, ...]:
+        """Nuisance numbers ride along with effects only; accused numbers alone leave the others as designed."""
+        if any(c.effect is not None for c in causes):
+            return self.channel.numbers
+        return tuple(c.name.removeprefix("parameter:") for c in causes)
+
+
+def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
+    """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause."""
+    best: dict[tuple[str, ...], Fit] = {}
+    for one in fits:
+        key = tuple(sorted(one.names))
+        if key not in best or score(one, rows, 1.0) > score(best[key], rows, 1.0):
+            best[key] = one
+    return list(best.values())

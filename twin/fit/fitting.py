@@ -1,0 +1,129 @@
+"""Fits one hypothesis to one channel: the best starts of a coarse look, each refined."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.fit.channel import Channel
+from twin.fit.least_squares import Minimum, descend, minimise
+from twin.fit.space import Space, form_starts
+from twin.plant import Plant
+
+
+@dataclass(frozen=True, slots=True)
+class Fit:
+    """A fitted hypothesis. `mse` is the mean squared residual in units of the noise variance; `prior` its penalty."""
+
+    space: Space
+    z: FloatArray
+    mse: float
+    prior: float
+    residuals: FloatArray
+    normal: FloatArray
+    evaluations: int
+
+    @property
+    def plant(self) -> Plant:
+        return self.space.plant(self.z)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return tuple(c.name for c in self.space.causes)
+
+    def values(self) -> FloatArray:
+        """The unknowns in their units."""
+        return np.array([u.centre + u.unit * v for u, v in zip(self.space.unknowns, self.z, strict=True)])
+
+    def deviations(self, scale: float = 1.0) -> FloatArray:
+        """Standard deviations of the unknowns in their units, for residuals `scale` times their nominal noise."""
+        if not self.z.size:
+            return np.zeros(0)
+        covariance = np.linalg.pinv(self.normal + np.diag(1e-9 * np.maximum(np.diag(self.normal), 1e-9)))
+        units = np.array([u.unit for u in self.space.unknowns])
+        deviations: FloatArray = scale * np.sqrt(np.maximum(np.diag(covariance), 0.0)) * np.abs(units)
+        return deviations
+
+
+def fit(
+    channel: Channel,
+    space: Space,
+    starts: Sequence[FloatArray],
+    *,
+    rounds: int = 12,
+    refine: int = 1,
+    weights: FloatArray | None = None,
+) -> Fit:
+    """Fits `space` from the best `refine` of the `starts` (vectors in z). `weights` (0..1 per row) holds rows out."""
+    spreads = space.spreads
+    root = None if weights is None else np.sqrt(weights)
+
+    def residuals(z: FloatArray) -> FloatArray:
+        r = channel.residuals(space.plant(z))
+        return np.concatenate([r if root is None else r * root, z / spreads])
+
+    ranked = _rank(residuals, starts, refine) if len(starts) > refine else list(starts)
+    rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)
+    minima = []
+    for start in ranked:
+        z = descend(residuals, start, rough, space.lower, space.upper) if rough.size else start
+        minima.append(minimise(residuals, z, space.lower, space.upper, space.steps, rounds))
+    best = min(minima, key=lambda m: m.cost)
+    return _finished(channel, space, best, weights, sum(m.evaluations for m in minima) + len(starts))
+
+
+def _rank(residuals: object, starts: Sequence[FloatArray], keep: int) -> list[FloatArray]:
+    assert callable(residuals)
+    costs = []
+    for start in starts:
+        r = residuals(start)
+        costs.append(float(r @ r))
+    return [starts[i] for i in np.argsort(costs)[:keep]]
+
+
+def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray | None, used: int) -> Fit:
+    data = best.residuals[: channel.use.size]
+    prior = float(np.sum((best.z / space.spreads) ** 2))
+    rows = channel.rows if weights is None else float(np.sum(weights * channel.use))
+    return Fit(space, best.z, float(data @ data) / max(rows, 1.0), prior, data, best.normal, used)
+
+
+def starts_of(space: Space, known: Fit | None = None) -> list[FloatArray]:
+    """Start vectors of a space: design numbers at their nominals (or as in `known`), effects at each of their starts.
+
+    Causes that `known` already has start where it ended.
+    """
+    heads = [np.zeros(len(space.numbers))]
+    for cause in space.causes:
+        if cause.form is None:
+            continue
+        block = _known_block(known, cause.name, cause.form.name)
+        options = form_starts(cause.form) if block is None else [block]
+        heads = [np.concatenate([head, option]) for head in heads for option in options]
+    if known is not None:
+        for head in heads:
+            _copy_numbers(head, space, known)
+    return heads
+
+
+def _known_block(known: Fit | None, name: str, form: str) -> FloatArray | None:
+    if known is None:
+        return None
+    at = len(known.space.numbers)
+    for cause in known.space.causes:
+        if cause.form is None:
+            continue
+        count = len(cause.form.parameters)
+        if cause.name == name and cause.form.name == form:
+            return known.z[at : at + count]
+        at += count
+    return None
+
+
+def _copy_numbers(head: FloatArray, space: Space, known: Fit) -> None:
+    for k, name in enumerate(space.numbers):
+        if name in known.space.numbers:
+            head[k] = known.z[known.space.numbers.index(name)]

@@ -1,0 +1,148 @@
+"""The unknowns of a hypothesis: which causes are in it, and how a vector of unknowns becomes a plant.
+
+A hypothesis is a set of causes. An effect among them brings the parameters of one of its forms. A design number among
+them is free; the other design numbers of the stage are nuisances with a tight prior, so that re-tuning can neither hide
+an effect nor can an effect take credit for re-tuning.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.effect import Effect, Form, Parameter, Scales
+from twin.fit.numbers import NUMBERS, nominal, reference, retuned
+from twin.plant import Inserted, Plant
+
+#: Relative spread of a design number that nobody accuses, and of one that stands accused.
+NUISANCE_SPREAD = 0.01
+ACCUSED_SPREAD = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """An effect in one of its forms, or a design number (`form` is None)."""
+
+    name: str
+    effect: Effect | None = None
+    form: Form | None = None
+
+    @property
+    def stage(self) -> str:
+        """Stage of the chain: ep, actuator or sensor."""
+        return self.effect.stage if self.effect else NUMBERS[self.name.removeprefix("parameter:")]
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """One unknown: value = centre + unit * z, within bounds on z; `spread` is the prior's standard deviation of z."""
+
+    label: str
+    centre: float
+    unit: float
+    lower: float
+    upper: float
+    spread: float
+    step: float
+    smooth: bool = True
+
+
+@dataclass(frozen=True, slots=True)
+class Space:
+    """The unknowns of a hypothesis over a base plant (design and effects already accepted as true)."""
+
+    base: Plant
+    causes: tuple[Cause, ...]
+    numbers: tuple[str, ...]
+    unknowns: tuple[Unknown, ...]
+
+    def plant(self, z: FloatArray) -> Plant:
+        """The plant at `z`: design numbers first, then the effects' parameters in the order of the causes."""
+        values = [u.centre + u.unit * float(v) for u, v in zip(self.unknowns, z, strict=True)]
+        design = retuned(self.base.design, dict(zip(self.numbers, values, strict=False)))
+        at = len(self.numbers)
+        inserted = list(self.base.inserted)
+        for cause in self.causes:
+            if cause.effect is not None and cause.form is not None:
+                count = len(cause.form.parameters)
+                inserted.append(Inserted(cause.name, cause.form, tuple(values[at : at + count])))
+                at += count
+        return Plant(design, tuple(inserted))
+
+    @property
+    def lower(self) -> FloatArray:
+        return np.array([u.lower for u in self.unknowns])
+
+    @property
+    def upper(self) -> FloatArray:
+        return np.array([u.upper for u in self.unknowns])
+
+    @property
+    def spreads(self) -> FloatArray:
+        return np.array([u.spread for u in self.unknowns])
+
+    @property
+    def steps(self) -> FloatArray:
+        return np.array([u.step for u in self.unknowns])
+
+
+def make_space(
+    base: Plant, causes: Sequence[Cause], numbers: Sequence[str], scales: Scales, spread: float = NUISANCE_SPREAD
+) -> Space:
+    """The space of a hypothesis; `numbers` are the design numbers of the stage, accused or not."""
+    accused = {c.name.removeprefix("parameter:") for c in causes if c.effect is None}
+    kept = [n for n in numbers if n in accused or spread > 0.0]
+    unknowns = [_number(base.design, n, ACCUSED_SPREAD if n in accused else spread) for n in kept]
+    for cause in causes:
+        if cause.form is not None:
+            unknowns += _form_unknowns(cause.name, cause.form, scales)
+    return Space(base, tuple(causes), tuple(kept), tuple(unknowns))
+
+
+def _number(design: DesignModel, name: str, spread: float) -> Unknown:
+    centre = nominal(design, name)
+    size = reference(design, name)
+    lowest = -0.9 * centre / size if name != "offset" else -1.0
+    highest = 4.0 if name != "offset" else 1.0
+    return Unknown(name, centre, size, lowest, highest, spread, 1e-3)
+
+
+def _form_unknowns(cause: str, form: Form, scales: Scales) -> list[Unknown]:
+    unknowns = []
+    for p in form.parameters:
+        size = p.scale * scales.factor(p.kind)
+        centre = p.neutral * scales.factor(p.kind)
+        lower, upper = ((bound - p.neutral) / p.scale for bound in (p.lower, p.upper))
+        step = 5e-3 if p.smooth else 4e-2
+        unknowns.append(Unknown(f"{cause}.{p.name}", centre, size, lower, upper, _spread(p), step, p.smooth))
+    return unknowns
+
+
+def form_starts(form: Form) -> list[FloatArray]:
+    """Start vectors of a form's own unknowns in z: every combination of its parameters' starts.
+
+    A parameter to which the response jumps is started densely: its valleys are narrow.
+    """
+    starts: list[list[float]] = [[]]
+    for p in form.parameters:
+        values = [(s - p.neutral) / p.scale for s in (p.starts if p.smooth else _dense(p))]
+        starts = [[*head, v] for head in starts for v in values]
+    return [np.array(s) for s in starts]
+
+
+def _dense(p: Parameter) -> list[float]:
+    """Starts of a parameter with narrow valleys: log-spaced over its range of starts where it is a size."""
+    low, high = min(p.starts), max(p.starts)
+    if not p.size or low <= 0.0:
+        return list(p.starts)
+    return [float(v) for v in np.geomspace(0.7 * low, min(1.5 * high, p.upper), 28)]
+
+
+def _spread(p: Parameter) -> float:
+    """Prior spread of an effect parameter in z: twice its clear size, more where its range lies far from neutral."""
+    nearest = min(abs((s - p.neutral) / p.scale) for s in p.starts)
+    return max(2.0, 1.5 * nearest)

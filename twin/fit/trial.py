@@ -1,0 +1,69 @@
+"""A recording made ready for fitting: time grid, start state, which rows count."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+import numpy.typing as npt
+
+from logs.recording import FloatArray, Recording
+from twin.timegrid import TimeGrid, make_grid
+
+#: Rows right after the start that do not count: the state before the first row is unknown.
+SETTLE_S = 3.0
+
+
+@dataclass(frozen=True, slots=True)
+class Trial:
+    """One recording with its fine grid. `use_p`, `use_y` (bool, shape (n,)) mark the rows that count.
+
+    `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
+    """
+
+    recording: Recording
+    grid: TimeGrid
+    start_pressure: float
+    start_position: float
+    use_p: npt.NDArray[np.bool_]
+    use_y: npt.NDArray[np.bool_]
+    pressure: FloatArray | None = None
+
+    def with_pressure(self, pressure: FloatArray) -> Trial:
+        """The same trial with a smoothed measured pressure on its fine grid."""
+        return replace(self, pressure=pressure)
+
+
+def make_trial(recording: Recording, step_s: float, bad_rows: npt.NDArray[np.bool_] | None = None) -> Trial:
+    """Prepares a recording; `bad_rows` are false readings of the position that no fit may see."""
+    grid = make_grid(recording.time_s, step_s)
+    use_y = np.isfinite(recording.position)
+    if bad_rows is not None:
+        use_y &= ~bad_rows
+    early = recording.time_s - recording.time_s[0] < SETTLE_S
+    use_p = np.zeros_like(use_y)
+    if recording.pressure is not None:
+        use_p = np.isfinite(recording.pressure) & ~early
+    position = _at_start(recording.position, use_y)
+    pressure = recording.command[0]
+    if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
+        pressure = recording.pressure[np.flatnonzero(np.isfinite(recording.pressure))[0]]
+    return Trial(recording, grid, float(pressure), position, use_p, use_y & ~early)
+
+
+def _at_start(position: FloatArray, use: npt.NDArray[np.bool_]) -> float:
+    """The first position: the mean over the readings before it leaves the band of its own noise."""
+    values = position[use][:200]
+    if values.size < 4:
+        return float(values[0]) if values.size else 0.0
+    noise = 1.4826 * float(np.median(np.abs(np.diff(values)))) / np.sqrt(2.0)
+    base = float(np.median(values[:4]))
+    away = np.flatnonzero(np.abs(values - base) > 4.0 * noise + 1e-12)
+    still = values[: max(int(away[0]), 1)] if away.size else values
+    return float(np.mean(still))
+
+
+def concatenate(parts: Sequence[FloatArray]) -> FloatArray:
+    """One array out of the trials' arrays, in their order."""
+    return np.concatenate(parts) if len(parts) > 1 else np.asarray(parts[0])

@@ -1,0 +1,70 @@
+"""The gap on data that no fit has seen: blocks of the record take turns in being held out.
+
+Blocks are long against the valve's lags and alternate, so that both halves see all conditions of the excitation, but
+no row is ever predicted by a fit that used it. Everything is predicted from the command alone: the whole chain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from logs.recording import FloatArray
+from twin.case import Case
+from twin.fit.channel import Channel, chain_channel
+from twin.fit.fitting import Fit, fit
+from twin.plant import Plant
+from twin.stages import combined
+
+FOLDS = 2
+BLOCKS = 16
+_LONG_S = 20.0
+
+
+@dataclass(frozen=True, slots=True)
+class Heldout:
+    """Errors reading - prediction on held-out rows, shape (n,), NaN where a row does not count; position units."""
+
+    before: FloatArray
+    retuned: FloatArray
+    after: FloatArray
+
+    @staticmethod
+    def rms(error: FloatArray) -> float:
+        """Root mean square over the rows that count."""
+        return float(np.sqrt(np.nanmean(np.square(error))))
+
+
+def fold_weights(case: Case) -> list[npt.NDArray[np.float64]]:
+    """For each fold the weight of every row in its fit: 0 in the blocks that the fold predicts."""
+    fold_of = np.concatenate([_fold_of_rows(t.recording.time_s) for t in case.trials])
+    return [(fold_of != fold).astype(np.float64) for fold in range(FOLDS)]
+
+
+def _fold_of_rows(time_s: FloatArray) -> npt.NDArray[np.int64]:
+    duration = time_s[-1] - time_s[0]
+    length = max(duration / BLOCKS, min(_LONG_S, duration / FOLDS))
+    block = np.minimum((time_s - time_s[0]) // max(length, 1e-9), 1e9).astype(np.int64)
+    return np.asarray(block % FOLDS, dtype=np.int64)
+
+
+def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArray, rounds: int = 5) -> list[Fit]:
+    """The same hypotheses fitted again, from where they ended, on the rows with weight only."""
+    return [
+        fit(channel, one.space, [one.z], rounds=rounds, weights=weights)
+        for one, channel in zip(fits, channels, strict=True)
+    ]
+
+
+def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:
+    """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count."""
+    chain = chain_channel(case.trials, case.sigma_y)
+    error = np.full(chain.measured.size, np.nan)
+    for weights in fold_weights(case):
+        plant = combined(base, refitted(fits, channels, weights)) if fits else base
+        held = (weights == 0.0) & chain.use
+        error[held] = (chain.measured - chain.prediction(plant))[held]
+    return error

@@ -1,0 +1,75 @@
+"""Stage by stage: the converter on its measured pressure, then valve and sensor on the pressure that was there.
+
+Without a measured pressure there is one channel, the whole chain.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from twin.case import Case
+from twin.choose.decide import Decision, DecisionRules, decide
+from twin.choose.search import Searcher, SearchRules
+from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
+from twin.fit.fitting import Fit
+from twin.fit.numbers import nominal, retuned
+from twin.fit.smooth import smoothed_pressure
+from twin.fit.trial import Trial
+from twin.plant import Plant
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class StageResult:
+    """Decisions per channel ("pressure" and "position", or "chain" alone) and the plant they add up to."""
+
+    case: Case
+    decisions: tuple[Decision, ...]
+    trials: tuple[Trial, ...]
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Names of all accepted causes."""
+        return tuple(name for d in self.decisions for name in d.names)
+
+    def plant(self) -> Plant:
+        """The base plant with everything accepted."""
+        return combined(self.case.base, [d.accepted for d in self.decisions if d.explained])
+
+
+def combined(base: Plant, fits: Sequence[Fit]) -> Plant:
+    """One plant out of fits on different channels: each brings its design numbers and its effects."""
+    design = base.design
+    inserted = list(base.inserted)
+    for one in fits:
+        plant = one.plant
+        design = retuned(design, {n: nominal(plant.design, n) for n in one.space.numbers})
+        inserted += plant.inserted[len(base.inserted) :]
+    return Plant(design, tuple(inserted))
+
+
+def judge(case: Case, search: SearchRules, rules: DecisionRules, progress: Progress) -> StageResult:
+    """Runs the search on every channel that the signals allow."""
+    if case.sigma_p is None:
+        channel = chain_channel(case.trials, case.sigma_y)
+        return StageResult(case, (_judge(case, channel, search, rules, progress),), case.trials)
+    first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress)
+    trials = drive_by_measured(case, first)
+    second = _judge(case, position_channel(trials, case.sigma_y), search, rules, progress)
+    return StageResult(case, (first, second), trials)
+
+
+def drive_by_measured(case: Case, converter: Decision) -> tuple[Trial, ...]:
+    """The trials with their smoothed measured pressure, smoothed about the best converter model there is."""
+    assert case.sigma_p is not None
+    best = min((converter.findings.none, *converter.findings.fits), key=lambda f: f.mse)
+    correlation = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
+    plant = best.plant
+    return tuple(t.with_pressure(smoothed_pressure(plant, t, case.sigma_p, correlation)) for t in case.trials)
+
+
+def _judge(case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress) -> Decision:
+    findings = Searcher(channel, case.base, case.scales, search, progress).run()
+    return decide(findings, rules)
