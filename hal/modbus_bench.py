@@ -65,6 +65,8 @@ class ModbusBench:
         self._identity: dict[str, str] = {}
         self._mismatches = 0
         self._open = False
+        self._armed = False
+        self.held_command: float | None = None  # what the device held when we came
 
     @property
     def info(self) -> BenchInfo:
@@ -89,6 +91,8 @@ class ModbusBench:
         try:
             self._start()
         except BaseException:
+            if self._armed:  # else it would take over later, for no reason that anybody could see
+                self._quietly(self._watchdog.let_go)
             self._close()
             raise
         return self
@@ -105,7 +109,8 @@ class ModbusBench:
     def _start(self) -> None:
         for device in self.profile.devices.values():
             self._identity |= check_identity(self.bus, device, self._port)
-        self.observe(strict=True)  # proves that every signal can be read, before the first command
+        # Proves that every signal can be read, before the first command.
+        self.held_command = self._observe(strict=True, freshness=Freshness()).readback_psi
         if self._read_only:
             return
         if self._watchdog.tripped():
@@ -115,6 +120,7 @@ class ModbusBench:
                     "look at the valve, then give it back with `lostmotion set --acknowledge`"
                 )
             self._watchdog.clear()
+        self._armed = True
         self._watchdog.arm(self.profile.safe_command)
 
     def _close(self) -> None:
@@ -142,18 +148,19 @@ class ModbusBench:
             self._check(sample)
             return sample
 
-    def observe(self, *, strict: bool = False) -> Sample:
-        """Reads everything and writes nothing; `commanded_psi` is the read-back, NaN where there is none.
+    def observe(self) -> Sample:
+        """Reads everything and writes nothing; `commanded_psi` is the read-back, NaN where there is none."""
+        return self._observe(strict=False, freshness=self._freshness)
 
-        Raises: with `strict`, `WireFault` or `DeviceRefused` when a signal cannot be read.
-        """
+    def _observe(self, *, strict: bool, freshness: Freshness) -> Sample:
+        """`strict`: a signal that cannot be read raises what the bus raises, instead of being MISSING."""
         with self._lock:
             began_s = self._clock.now_s()
             replies: Replies = []
             for block in self._plan.every_block():
                 ask = block.request()
                 replies.append((block, self.bus.transact(ask, retries=2) if strict else self._try(ask)))
-            return assemble(None, began_s, replies, self._freshness)
+            return assemble(None, began_s, replies, freshness)
 
     def make_safe(self, reason: str) -> bool:
         """Sends the safe command, up to three times; True when the device confirmed it.
