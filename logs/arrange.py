@@ -9,21 +9,23 @@ from logs.scene import Scene
 if TYPE_CHECKING:
     import rerun.blueprint as rrb
 
+LIVE_S = 60.0
 MAIN = ("/pressure", "/position")
 
 
-def arrange(scene: Scene, window_s: float | None, trail_s: float) -> rrb.Blueprint:
-    """The blueprint. With `window_s` the plots show only the last seconds, for watching a run live."""
+def arrange(scene: Scene, *, duration_s: float | None, trail_s: float) -> rrb.Blueprint:
+    """The blueprint of a finished run of `duration_s`, shown whole; None: of a live one, shown for its last minute."""
     import rerun.blueprint as rrb
 
+    axis = _axis(duration_s)
     titles = {group.entity: _title(group.entity, group.labels, group.unit) for group in scene.groups}
-    plots = [_series(entity, titles[entity], window_s) for entity in MAIN if entity in titles]
-    others = [_series(entity, title, window_s) for entity, title in titles.items() if entity not in MAIN]
+    plots = [_series(entity, titles[entity], axis) for entity in MAIN if entity in titles]
+    others = [_series(entity, title, axis) for entity, title in titles.items() if entity not in MAIN]
     if scene.target:
         unit = next(group.unit for group in scene.groups if group.entity == "/position")
-        plots.append(_series("/error", f"Error: target - position [{unit}]", window_s))
+        plots.append(_series("/error", f"Error: target - position [{unit}]", axis))
     shares = [3.0] * min(len(plots), 2) + [1.6] * (len(plots) - 2)
-    states = rrb.StateTimelineView(origin="/state", contents="/state/**", name="Bench state")
+    states = rrb.StateTimelineView(origin="/state", contents="/state/**", name="Bench state", time_view=axis)
     left = rrb.Vertical(*plots, states, row_shares=[*shares, 0.9])
     plane = [scene.plane.view("Hysteresis plane", trail_s)] if scene.plane else []
     right = rrb.Vertical(*plane, _words(), row_shares=[*[3.0 for _ in plane], 2.0])
@@ -42,7 +44,7 @@ def _words() -> rrb.Tabs:
     import rerun.blueprint as rrb
 
     return rrb.Tabs(
-        rrb.TextLogView(origin="/log", contents="/log/**", name="Events and notes"),
+        rrb.TextLogView(origin="/log", contents="/log/**", name="Events and notes", columns=_log_columns()),
         rrb.TextDocumentView(origin="/about", name="About this run"),
         active_tab=0,
     )
@@ -53,16 +55,34 @@ def _title(entity: str, labels: tuple[str, ...], unit: str) -> str:
     return words[:1].upper() + words[1:] + (f" [{unit}]" if unit else "")
 
 
-def _series(entity: str, title: str, window_s: float | None) -> rrb.TimeSeriesView:
+def _log_columns() -> rrb.TextLogColumns:
+    """Time, level and words; where in the tree a line was logged is nobody's business."""
     import rerun.blueprint as rrb
 
-    ranges = None
-    if window_s is not None:
-        ranges = rrb.VisibleTimeRange(
-            "run_time",
-            start=rrb.TimeRangeBoundary.cursor_relative(seconds=-window_s),
-            end=rrb.TimeRangeBoundary.cursor_relative(),
+    column = rrb.encodings.TextLogColumn
+    return rrb.TextLogColumns(
+        text_log_columns=[column("EntityPath", visible=False), column("LogLevel"), column("Body")]
+    )
+
+
+def _axis(duration_s: float | None) -> rrb.TimeAxis:
+    """The time axis of every plot. A linked axis would open on half a minute around the cursor, so each has its own."""
+    import rerun.blueprint as rrb
+
+    edge = rrb.TimeRangeBoundary
+    if duration_s is None:
+        span = rrb.TimeRange(
+            start=edge.cursor_relative(seconds=-LIVE_S), end=edge.cursor_relative(seconds=0.02 * LIVE_S)
         )
-    link = rrb.TimeAxis(link=rrb.components.LinkAxis.LinkToGlobal)
-    legend = rrb.PlotLegend(corner=rrb.Corner2D.RightTop)
-    return rrb.TimeSeriesView(origin=entity, name=title, time_ranges=ranges, axis_x=link, plot_legend=legend)
+    else:
+        span = rrb.TimeRange(
+            start=edge.absolute(seconds=-0.01 * duration_s), end=edge.absolute(seconds=1.02 * duration_s)
+        )
+    return rrb.TimeAxis(link="Independent", view_range=span)
+
+
+def _series(entity: str, title: str, axis: rrb.TimeAxis) -> rrb.TimeSeriesView:
+    import rerun.blueprint as rrb
+
+    legend = rrb.PlotLegend(corner=rrb.Corner2D.LeftTop)
+    return rrb.TimeSeriesView(origin=entity, name=title, axis_x=axis, plot_legend=legend)

@@ -57,19 +57,20 @@ def send_trail(stream: rr.RecordingStream, scene: Scene, time_s: FloatArray, pat
     )
 
 
-def send_whole_plane(stream: rr.RecordingStream, scene: Scene, time_s: FloatArray, path: FloatArray) -> None:
-    """A finished run in the plane: all of it, static and coloured by the direction of the pressure, and the trail."""
+def send_whole_plane(
+    stream: rr.RecordingStream, scene: Scene, time_s: FloatArray, path: FloatArray, command: FloatArray
+) -> None:
+    """A finished run in the plane: all of it, static and coloured by the command's direction, and the trail."""
     if scene.plane is None:
         return
-    good = np.isfinite(path).all(axis=1)
-    path, time_s = path[good], time_s[good]
-    every = max(1, -(-len(path) // PLANE_POINTS))
-    path, time_s = path[::every], time_s[::every]
-    pieces = by_direction(path[:, 0], path[:, 1])
+    good = np.flatnonzero(np.isfinite(path).all(axis=1))
+    good = good[:: max(1, -(-good.size // PLANE_POINTS))]
+    path = path[good]
+    pieces = by_direction(path, command[good])
     for name, colour in (("rising", RISING), ("falling", FALLING)):
         if pieces[name]:
-            scene.plane.draw_line(stream, f"run/{name}", pieces[name], colour, 0.7)
-    send_trail(stream, scene, time_s, path, TRAIL_STRIP)
+            scene.plane.draw_line(stream, f"run/{name}", pieces[name], colour, 0.8)
+    send_trail(stream, scene, time_s[good], path, TRAIL_STRIP)
 
 
 def send_events(stream: rr.RecordingStream, events: Sequence[Event], origin_s: float, end_s: float) -> None:

@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from hal.errors import BadInput
 from logs.assemble import Signals, assemble
 from logs.layout import is_run_folder
-from logs.recording import CommandTiming, Recording
+from logs.recording import CommandTiming, DataNote, Recording
 from logs.roles import QUANTITY, Column, Role, assign, parse_pairs, split_header
 from logs.table import Table, read_table
-from logs.units import conversion
+from logs.units import PERCENT, conversion, plain_name
 
 if TYPE_CHECKING:
     from logs.run import Run
@@ -49,11 +49,17 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
     names = [name for name in run.columns if not name.startswith("next_")]
     columns = assign(names, {}, where)
     stated = {role: run.units.get(column.header) or column.unit for role, column in columns.items()}
+    notes: tuple[DataNote, ...] = ()
+    if "pressure" in columns and plain_name(stated["command"]) == PERCENT != plain_name(stated["pressure"]):
+        # A positioner is told a position; its command and a pressure have no unit in common.
+        notes = (DataNote("the command is a position in percent", "the pressure is left out of the recording"),)
+        del columns["pressure"], stated["pressure"]
     signals = Signals(
         values={role: run.columns[column.header] for role, column in columns.items()},
         conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
         headers={role: column.header for role, column in columns.items()},
         quality={name: run.columns[name] for name in names if name == "quality" or name.endswith("_quality")},
+        notes=notes,
     )
     meta = {"run": run.start, "status": run.status, "reason": run.reason, "problems": run.problems}
     return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)

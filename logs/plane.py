@@ -79,6 +79,15 @@ class Plane:
         lines = rr.LineStrips2D(list(strips), colors=[colour] * len(strips), radii=radius)
         stream.log(f"{self.root}/{name}", lines, static=True)
 
+    def name_point(
+        self, stream: rr.RecordingStream, name: str, at: tuple[float, float], text: str, colour: Colour
+    ) -> None:
+        """Writes a word below a point, given in engineering units; static."""
+        import rerun as rr
+
+        label = rr.Points2D([at], labels=[text], show_labels=True, colors=[colour], radii=rr.Radius.ui_points(0.0))
+        stream.log(f"{self.root}/{name}", label, static=True)
+
     def view(self, name: str, trail_s: float | None = None) -> rrb.Spatial2DView:
         """A view of the plane; with `trail_s`, /trail shows only so many seconds up to the cursor."""
         import rerun.blueprint as rrb
@@ -132,16 +141,17 @@ def design_curves(design: Mapping[str, object]) -> dict[str, FloatArray] | None:
     return {"closing": line(a1), "opening": line(a2)}
 
 
-def by_direction(x: FloatArray, y: FloatArray) -> dict[str, list[FloatArray]]:
-    """Cuts a path into stretches of rising and of falling x, neighbours sharing their turning point; NaN breaks it."""
-    good = np.isfinite(x) & np.isfinite(y)
-    points = np.column_stack((x, y))[good]
+def by_direction(points: FloatArray, driver: FloatArray) -> dict[str, list[FloatArray]]:
+    """Cuts a path (n, 2) into the stretches in which `driver` (n,) rises and falls; neighbours share a point.
+
+    The driver is best the command, which has no noise.
+    """
     if len(points) < 2:
         return {"rising": [], "falling": []}
-    steps = np.sign(np.diff(points[:, 0]))
+    steps = np.sign(np.diff(driver))
     moving = np.flatnonzero(steps)
     if moving.size:  # a still stretch belongs to the direction before it
-        last = np.maximum.accumulate(np.where(steps != 0, np.arange(steps.size), 0))
+        last = np.maximum.accumulate(np.where(steps != 0, np.arange(steps.size), moving[0]))
         steps = steps[last]
     turns = np.flatnonzero(np.diff(steps)) + 1
     edges = [0, *turns.tolist(), len(points) - 1]

@@ -33,7 +33,7 @@ def write_rrd(run: Run, path: Path) -> Path:
     stream = rr.RecordingStream("lostmotion", recording_id=str(run.start.get("uuid", run.name)))
     stream.set_sinks(rr.FileSink(partial))
     stream.send_recording_name(run.name)
-    stream.send_blueprint(arrange(scene, None, TRAIL_S))
+    stream.send_blueprint(arrange(scene, duration_s=run.duration_s, trail_s=TRAIL_S))
     _send(stream, scene, run)
     stream.flush()
     stream.disconnect()
@@ -58,7 +58,7 @@ def _send(stream: object, scene: Scene, run: Run) -> None:
     send_samples(stream, scene, own, columns)
     if scene.plane is not None:
         path = np.column_stack((columns[scene.plane_x], columns[scene.position]))
-        send_whole_plane(stream, scene, own, path)
+        send_whole_plane(stream, scene, own, path, columns[scene.command or scene.plane_x])
     end_s = float(own[-1]) if own.size else 0.0
     send_events(stream, run.events, origin_s, end_s)
     stream.set_time("run_time", duration=end_s)

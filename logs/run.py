@@ -119,7 +119,7 @@ def read_run(path: Path) -> Run:
         units = {str(key): str(unit) for key, unit in named.items()} if isinstance(named, Mapping) else {}
         columns = {key: np.zeros(0) for key in units}
     stop = _read_stop(path, problems)
-    running = stop is None and _is_being_written(path / SAMPLES)
+    running = stop is None and is_being_written(path / SAMPLES)
     rows = next(iter(columns.values())).size if columns else 0
     if stop is None and not running:
         problems.insert(0, f"no stop document: the program was killed or the power failed; {rows} rows are readable")
@@ -213,7 +213,7 @@ def _read_events(path: Path, problems: list[str]) -> tuple[Event, ...]:
     return tuple(events)
 
 
-def _is_being_written(samples: Path) -> bool:
+def is_being_written(samples: Path) -> bool:
     """Whether a live writer holds its lock; a killed one holds none."""
     try:
         import fcntl

@@ -20,8 +20,8 @@ ERROR: Colour = (240, 98, 146)
 CLOSING: Colour = (129, 199, 132)
 OPENING: Colour = (186, 140, 255)
 OTHERS: tuple[Colour, ...] = ((77, 208, 225), (255, 213, 79), (174, 213, 129), (244, 143, 177), (176, 190, 197))
-RISING: Colour = (120, 96, 64)
-FALLING: Colour = (70, 96, 128)
+RISING: Colour = (150, 112, 66)
+FALLING: Colour = (78, 116, 160)
 STATES = {
     "idle": 0x78909CFF,
     "conditioning": 0x4DB6ACFF,
@@ -52,6 +52,7 @@ class Scene:
     groups: tuple[Group, ...]
     plane: Plane | None
     plane_x: str
+    command: str
     position: str
     target: str
     curves: Mapping[str, FloatArray]
@@ -72,6 +73,7 @@ class Scene:
             groups=tuple(group for group in groups if group.columns),
             plane=_plane(units, x_name, names["position"], start, curves) if names["position"] and x_name else None,
             plane_x=x_name,
+            command=names["command"],
             position=names["position"],
             target=names["target"],
             curves=curves or {},
@@ -96,7 +98,11 @@ class Scene:
             self.plane.draw_frame(stream)
             for name, colour in (("closing", CLOSING), ("opening", OPENING)):
                 if name in self.curves:
-                    self.plane.draw_line(stream, f"design/{name}", [self.curves[name]], colour, 1.3)
+                    line = self.curves[name]
+                    self.plane.draw_line(stream, f"design/{name}", [line], colour, 1.3)
+                    above = self.plane.y[1] + 0.06 * (self.plane.y[1] - self.plane.y[0])
+                    at = (float(line[2][0]), above)
+                    self.plane.name_point(stream, f"design/{name}_name", at, f"design {name}", colour)
 
 
 def _style(stream: rr.RecordingStream, entity: str, names: Sequence[str], colours: Sequence[Colour]) -> None:

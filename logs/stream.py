@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 CAPACITY_ROWS = 20_000
 PERIOD_S = 0.1
-WINDOW_S = 60.0
 TRAIL_S = 30.0
 SERVER_MEMORY = "256MiB"
 
@@ -132,7 +131,7 @@ class RunView:
                 raise OSError(f"nothing answers on the view's port {port}")
             self.uri = f"rerun+http://127.0.0.1:{port}/proxy"
         stream.send_recording_name(f"{start.get('kind', 'run')} {str(start.get('utc', utc_now().isoformat()))[:19]}")
-        stream.send_blueprint(arrange(self._scene, WINDOW_S, TRAIL_S))
+        stream.send_blueprint(arrange(self._scene, duration_s=None, trail_s=TRAIL_S))
         self._scene.draw_static(stream)
         page = rr.TextDocument(about(start), media_type=rr.MediaType.MARKDOWN)
         stream.log("/about", page, static=True)

@@ -125,9 +125,7 @@ def _wait_for_recording(client: ViewerClient, clock: Clock) -> None:
 
 
 def _set_cursor(client: ViewerClient, at_s: float | None) -> None:
-    if at_s is None:
-        client.set_time("run_time", play_state="following")
-    else:
+    if at_s is not None:
         client.set_time("run_time", duration=at_s, play_state="paused")
 
 

@@ -41,6 +41,7 @@ class RunWriter:
         self._known = frozenset(self._names)
         self._queue: deque[Row | Entry | threading.Event] = deque()
         self._handed = 0
+        self._first_time_s: float | None = None
         self._last_time_s: float | None = None
         self._wake = threading.Event()
         self._closing = False
@@ -90,6 +91,8 @@ class RunWriter:
         self._queue.append(tuple(row.get(name, nan) for name in self._names))
         self._handed += 1
         self._last_time_s = row.get("time_s", self._last_time_s)
+        if self._handed == 1:
+            self._first_time_s = self._last_time_s
         if len(self._queue) >= BATCH_ROWS:
             self._wake.set()
 
@@ -144,6 +147,7 @@ class RunWriter:
             "reason": reason,
             "utc": utc_now().isoformat(timespec="milliseconds"),
             "rows": self._handed,
+            "first_time_s": self._first_time_s,
             "last_time_s": self._last_time_s,
         }
 
