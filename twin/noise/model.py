@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from logs.recording import FloatArray, Recording
+from twin.noise.lattice import lattice_step
 from twin.noise.repeats import RepeatPair, find_repeats
 from twin.noise.robust import (
     MAX_LAG,
@@ -32,10 +33,11 @@ _LEAST = 200  # samples before a source is trusted
 class SignalNoise:
     """Noise of one signal in its own unit.
 
-    `sigma` leaves out false readings. `correlation_samples` is the integrated correlation time; `ar` and
-    `innovation_sigma` are the whitening filter. `heavy_tail_p` is the chance that Gaussian noise shows as many values
-    beyond 4.5 sigma; `tail_ratio` is the full RMS over sigma. `by_source` holds sigma from every source that was there:
-    repeats much louder than still stretches mean that something in the motion does not repeat.
+    `sigma` leaves out false readings and is never below that of the reading's own step. `correlation_samples` is the
+    integrated correlation time; `ar` and `innovation_sigma` are the whitening filter. `heavy_tail_p` is the chance that
+    Gaussian noise shows as many values beyond 4.5 sigma; `tail_ratio` is the full RMS over sigma. `by_source` holds
+    sigma from every source that was there: repeats much louder than still stretches mean that something in the motion
+    does not repeat.
     """
 
     sigma: float
@@ -101,10 +103,12 @@ def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPa
         by_source["high_frequency"] = float(np.median(fast))
     tail_pieces = sources["still"] if _rows(sources["still"]) >= _LEAST else repeated
     tail_p, ratio = _tails(np.concatenate(tail_pieces)) if tail_pieces else (1.0, 1.0)
+    # a coarse reading stands still without being right: it is never better than its step allows
+    least = (lattice_step(np.concatenate([getattr(r, name) for r in recordings])) or 0.0) / sqrt(12.0)
     for source, pieces in sources.items():
         if _rows(pieces) >= _LEAST:
-            return _measured(source, pieces, period, tail_p, ratio, by_source)
-    sigma = by_source.get("high_frequency", 0.0)
+            return _measured(source, pieces, period, tail_p, ratio, by_source, least)
+    sigma = max(by_source.get("high_frequency", 0.0), least)
     source = "high_frequency" if fast else "none"
     rows = sum(r.n for r in recordings)
     return SignalNoise(sigma, 1.0, source, rows, period, (), sigma, tail_p, ratio, by_source)
@@ -126,9 +130,11 @@ def _measured(
     tail_p: float,
     ratio: float,
     by_source: Mapping[str, float],
+    least: float,
 ) -> SignalNoise:
-    sigma = robust_sigma(np.concatenate(pieces))
-    tame = [clipped(piece, sigma) for piece in pieces]
+    spread = robust_sigma(np.concatenate(pieces))
+    sigma = max(spread, least)
+    tame = [clipped(piece, spread) for piece in pieces]
     taken = taken_by_parabola(pieces, MAX_LAG) if source == "still" else None
     rho = autocorrelation(tame, MAX_LAG, taken)
     tau = correlation_samples(rho)

@@ -1,0 +1,139 @@
+"""Event tests: each finds its effect at the right size, and nothing where nothing is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from logs.recording import Recording
+from tests.twin.toy_valve import Toy, record, staircase
+from twin.events.delay import delay
+from twin.events.dropouts import find_dropouts
+from twin.events.scan import Events, scan_events
+from twin.events.stale import chance_equal
+from twin.events.stickslip import stick_slip
+from twin.noise.lattice import lattice_step
+from twin.noise.model import estimate_noise
+
+DT = 0.1
+SIGMA = 8e-4
+STEP = 0.6 / 4096
+COMMAND = staircase(DT, 20.0, [5.0, 9.5, 11.0, 9.0, 7.0, 5.5, 10.5, 4.0, 13.0, 8.0])
+RAMP = np.concatenate([np.linspace(5, 12, 1400), np.linspace(12, 4, 1600)])
+
+
+def quantized(recording: Recording, step: float = STEP) -> Recording:
+    return replace(recording, position=np.round(recording.position / step) * step)
+
+
+def scan(recording: Recording) -> Events:
+    return scan_events(recording, estimate_noise([recording]))
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("command", [COMMAND, RAMP], ids=["steps", "ramp"])
+def test_a_clean_record_shows_nothing(seed: int, command: np.ndarray) -> None:
+    events = scan(quantized(record(Toy(), command, DT, seed, SIGMA)))
+    assert [name for name, evidence in events.evidence.items() if evidence.found] == []
+    assert not events.false_position.any()
+
+
+def test_stale_samples_and_their_period() -> None:
+    fresh = quantized(record(Toy(), COMMAND, DT, 1, SIGMA))
+    rows = np.floor(np.arange(fresh.n) / 2.5).astype(int)
+    held = replace(fresh, position=fresh.position[np.ceil(rows * 2.5).astype(int)])
+    evidence = scan(held).evidence["stale_samples"]
+    assert evidence.found
+    period = evidence.estimates["refresh_period"]
+    assert period.value == pytest.approx(0.25, rel=0.08)
+    assert period.ci95[0] < 0.25 < period.ci95[1]
+    assert evidence.estimates["regularity"].value > 0.7
+
+
+def test_lost_replies_hold_at_random_not_evenly() -> None:
+    fresh = quantized(record(Toy(), COMMAND, DT, 2, SIGMA))
+    lost = np.random.default_rng(0).random(fresh.n) < 0.2
+    source = np.maximum.accumulate(np.where(lost, 0, np.arange(fresh.n)))
+    evidence = scan(replace(fresh, position=fresh.position[source])).evidence["stale_samples"]
+    assert evidence.found
+    assert evidence.estimates["hold_fraction"].value == pytest.approx(0.2, abs=0.04)
+    assert abs(evidence.estimates["regularity"].value) < 0.4
+
+
+def test_coarse_steps_alone_are_not_stale() -> None:
+    coarse = quantized(record(Toy(), COMMAND, DT, 3, SIGMA / 8), 20 * STEP)
+    events = scan(coarse)
+    assert not events.evidence["stale_samples"].found
+    assert events.evidence["sensor_quantization"].found
+    assert events.evidence["sensor_quantization"].estimates["step"].value == pytest.approx(20 * STEP, rel=1e-6)
+
+
+def test_chance_of_equal_readings_against_draws() -> None:
+    rng = np.random.default_rng(4)
+    start = rng.uniform(0, 50, 200_000)
+    moved = start + 0.6 + 0.8 * rng.standard_normal(start.size)
+    drawn = np.mean(np.round(start) == np.round(moved))
+    assert chance_equal(np.array([0.6]), 0.8, 1.0)[0] == pytest.approx(drawn, abs=0.005)
+    assert chance_equal(np.array([0.25]), 0.0, 1.0)[0] == pytest.approx(0.75)
+
+
+def test_false_readings_are_found_where_they_are() -> None:
+    clean = record(Toy(), COMMAND, DT, 5, SIGMA)
+    rng = np.random.default_rng(1)
+    false = (rng.random(clean.n) < 0.01) & (clean.position > 0.05)
+    position = np.where(false, 0.0, clean.position)
+    found = find_dropouts(position, SIGMA)
+    assert np.mean(found.rows[false]) > 0.9
+    assert np.mean(found.rows[~false]) < 2e-3
+    assert found.codes == (0.0,)
+    rate = found.evidence.estimates["rate"]
+    assert rate.ci95[0] < false.mean() < rate.ci95[1]
+    assert found.evidence.found
+
+
+def test_a_jump_that_stays_is_no_dropout() -> None:
+    position = np.where(np.arange(500) < 250, 0.1, 0.3) + SIGMA * np.random.default_rng(0).standard_normal(500)
+    assert not find_dropouts(position, SIGMA).rows.any()
+
+
+def test_stick_slip_on_slow_ramps() -> None:
+    slipping = record(Toy(breakaway=0.6, tau_s=0.6), RAMP, DT, 6, SIGMA)
+    evidence = scan(slipping).evidence["stiction"]
+    assert evidence.found
+    assert evidence.estimates["build_up"].value == pytest.approx(0.6, rel=0.5)
+    assert evidence.estimates["jump"].value == pytest.approx(0.6 * 0.19, rel=0.3)
+    smooth = record(Toy(tau_s=0.6), RAMP, DT, 6, SIGMA)
+    assert scan(smooth).evidence["stiction"].estimates["speed_kurtosis"].value < 4
+    assert stick_slip(smooth.time_s, smooth.position, None, SIGMA).note.startswith("without measured pressure")
+    steps = record(Toy(), COMMAND, DT, 6, SIGMA)
+    assert "no slow ramp" in scan(steps).evidence["stiction"].note
+
+
+@pytest.mark.parametrize("true_s", [0.0, 0.1, 0.4])
+def test_delay_is_read_to_a_part_of_a_period(true_s: float) -> None:
+    recording = record(Toy(delay_s=true_s), COMMAND, DT, 7, SIGMA)
+    assert recording.pressure is not None
+    evidence = delay(recording.time_s, recording.command, recording.pressure, 0.02)
+    estimate = evidence.estimates["delay"]
+    assert estimate.value == pytest.approx(true_s, abs=0.01)
+    assert estimate.ci95[0] - 0.004 <= true_s <= estimate.ci95[1] + 0.004
+    assert evidence.found == (true_s > 0)
+    assert evidence.estimates["lag"].value == pytest.approx(0.3, abs=0.02)
+
+
+def test_delay_needs_a_moving_command() -> None:
+    n = 500
+    evidence = delay(np.arange(n) * DT, np.full(n, 8.0), 8.0 + 0.02 * np.random.default_rng(0).standard_normal(n), 0.02)
+    assert not evidence.found
+    assert "hardly moves" in evidence.note
+
+
+def test_lattice_of_converted_counts_and_of_none() -> None:
+    rng = np.random.default_rng(8)
+    counts = rng.integers(300, 3000, 3000)
+    assert lattice_step(counts * STEP + 0.01) == pytest.approx(STEP, rel=1e-6)
+    assert lattice_step(np.round(counts * STEP * 8, 4)) == pytest.approx(8 * STEP, rel=1e-3)
+    assert lattice_step(rng.standard_normal(3000)) is None
+    assert lattice_step(np.array([0.0, 1.0, 2.0])) is None

@@ -1,0 +1,96 @@
+"""Isolated false readings: one to three samples away from both neighbours, at no place where the stem could have been.
+
+They hide in a noise floor taken from repeats, so they are found by their look and masked for every fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import log
+
+import numpy as np
+import numpy.typing as npt
+from scipy.ndimage import median_filter
+from scipy.stats import beta
+
+from logs.recording import FloatArray
+from twin.diagnosis import Estimate
+from twin.events.evidence import Evidence, nothing
+from twin.noise.model import poisson_tail
+from twin.noise.robust import robust_sigma
+
+BoolArray = npt.NDArray[np.bool_]
+
+_SIGMAS = 6.0
+_LONGEST = 3
+_WINDOW = 9
+_FALSE_RATE = 1e-7  # per row, of a Gaussian reading beyond six sigma that also comes back
+
+
+@dataclass(frozen=True, slots=True)
+class Dropouts:
+    """`rows` marks the false readings, shape (n,); `codes` are values that many of them share (zero, full scale)."""
+
+    rows: BoolArray
+    evidence: Evidence
+    codes: tuple[float, ...] = ()
+
+
+def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor_dropouts") -> Dropouts:
+    """False readings of one signal; `noise_sigma` in its unit. Estimates: `rate` per reading, median `size`.
+
+    NaN counts as missing, not as false. Runs longer than three samples are no drop-outs but something that moved.
+    """
+    known = np.isfinite(reading)
+    rows = np.zeros(reading.size, dtype=bool)
+    if known.sum() < 3 * _WINDOW:
+        return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
+    y = reading[known]
+    apart = y - median_filter(y, _WINDOW, mode="nearest")
+    # corners of the motion depart from a median too: the usual departure sets the scale where it is the larger one
+    bound = _SIGMAS * max(noise_sigma, robust_sigma(apart), 1e-12)
+    false = _isolated(y, np.abs(apart) > bound, apart, bound)
+    rows[known] = false
+    count = int(false.sum())
+    if count == 0:
+        return Dropouts(rows, Evidence(effect, 0.0, 1.0, {"rate": Estimate(0.0, (0.0, 3.0 / y.size), "1/sample")}))
+    sizes = np.abs(apart[false])
+    spread = max(float(np.ptp(y)), bound)
+    # each false reading: somewhere in the range, instead of that far out on a Gaussian
+    gains = (
+        np.minimum(0.5 * (sizes / (bound / _SIGMAS)) ** 2, 50.0) - log(spread / (bound / _SIGMAS)) + log(count / y.size)
+    )
+    ratio = max(0.0, float(gains.sum()))
+    estimates = {
+        "rate": Estimate(count / y.size, _binomial(count, y.size), "1/sample"),
+        "size": Estimate(float(np.median(sizes)), (float(sizes.min()), float(sizes.max())), ""),
+    }
+    p_value = poisson_tail(count, _FALSE_RATE * y.size)
+    return Dropouts(rows, Evidence(effect, ratio, p_value, estimates), _codes(y[false]))
+
+
+def _isolated(y: FloatArray, far: BoolArray, apart: FloatArray, bound: float) -> BoolArray:
+    """Runs of at most three far samples of one sign whose outer neighbours agree with each other."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]]).astype(np.int8)))
+    starts, stops = edges[::2], edges[1::2]
+    before, after = y[np.maximum(starts - 1, 0)], y[np.minimum(stops, y.size - 1)]
+    depth = np.array([np.abs(apart[a:b]).min() for a, b in zip(starts, stops, strict=True)])
+    inner = (starts > 0) & (stops < y.size)
+    back = np.abs(after - before) < np.maximum(0.5 * depth, bound)
+    good = (stops - starts <= _LONGEST) & (back | ~inner)
+    marked = np.zeros(y.size, dtype=bool)
+    for start, stop in zip(starts[good], stops[good], strict=True):
+        marked[start:stop] = True
+    return marked
+
+
+def _codes(values: FloatArray) -> tuple[float, ...]:
+    """Values shared exactly by at least three and a fifth of the false readings."""
+    found, counts = np.unique(values, return_counts=True)
+    return tuple(float(v) for v in found[counts >= max(3, values.size / 5)])
+
+
+def _binomial(count: int, total: int) -> tuple[float, float]:
+    """The exact 95 % interval of a rate (Clopper & Pearson 1934)."""
+    low = float(beta.ppf(0.025, count, total - count + 1)) if count else 0.0
+    return low, float(beta.ppf(0.975, count + 1, total - count))

@@ -1,0 +1,72 @@
+"""All event tests on one recording: what the look of the readings says before any model is tried."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+
+from logs.recording import Recording
+from twin.diagnosis import Estimate
+from twin.events.delay import delay
+from twin.events.dropouts import find_dropouts
+from twin.events.evidence import Evidence, nothing
+from twin.events.stale import stale_samples
+from twin.events.stickslip import stick_slip
+from twin.noise.lattice import lattice_step
+from twin.noise.model import NoiseModel
+
+_MATERIAL = 0.25  # of the floor's variance
+
+
+@dataclass(frozen=True, slots=True)
+class Events:
+    """Evidence per effect name, and the rows (shape (n,), True = false reading) that no fit should use.
+
+    `quantization_share` is the part of the position floor's variance that the reading's step makes: every reading has
+    a step, and only one that makes a good part of the floor is the effect `sensor_quantization`.
+    """
+
+    evidence: dict[str, Evidence]
+    false_position: npt.NDArray[np.bool_]
+    false_pressure: npt.NDArray[np.bool_]
+    quantization_share: float = 0.0
+
+
+def scan_events(recording: Recording, noise: NoiseModel) -> Events:
+    """Tests one recording for stale samples, drop-outs, quantization, stick-slip and dead time."""
+    position, pressure = recording.position, recording.pressure
+    sigma = noise.position.sigma
+    drop = find_dropouts(position, sigma)
+    clean = np.where(drop.rows, np.nan, position)
+    step = lattice_step(clean)
+    quantization, share = _quantization(step, sigma, recording.position_unit)
+    evidence = {
+        "sensor_dropouts": drop.evidence,
+        "stale_samples": stale_samples(recording.time_s, clean, sigma, step),
+        "sensor_quantization": quantization,
+    }
+    false_pressure = np.zeros(recording.n, dtype=bool)
+    if pressure is None or noise.pressure is None:
+        evidence["stiction"] = stick_slip(recording.time_s, clean, None, sigma)
+        evidence["dead_time"] = nothing("dead_time", "no pressure was measured")
+    else:
+        false_pressure = find_dropouts(pressure, noise.pressure.sigma).rows
+        true_pressure = np.where(false_pressure, np.nan, pressure)
+        evidence["stiction"] = stick_slip(recording.time_s, clean, true_pressure, sigma)
+        memory = noise.pressure.correlation_samples
+        evidence["dead_time"] = delay(recording.time_s, recording.command, true_pressure, noise.pressure.sigma, memory)
+    return Events(evidence, drop.rows, false_pressure, share)
+
+
+def _quantization(step: float | None, sigma: float, unit: str) -> tuple[Evidence, float]:
+    if step is None or sigma <= 0.0:
+        return nothing("sensor_quantization", "the readings lie on no lattice"), 0.0
+    share = min(step**2 / 12.0 / sigma**2, 1.0)
+    estimates = {"step": Estimate(step, (step, step), unit)}
+    if share < _MATERIAL:
+        note = f"the step makes {share:.0%} of the noise: fine enough"
+        return Evidence("sensor_quantization", 0.0, 1.0, estimates, note), share
+    # that the values lie on this lattice is beyond doubt; the ratio only orders coarse steps
+    return Evidence("sensor_quantization", 50.0 * share, 1e-12, estimates), share
