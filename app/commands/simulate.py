@@ -1,0 +1,111 @@
+"""Replay a recording's command through a model, with its effects, and write what it should have read.
+
+MODEL.toml is a design model file, as `identify` and `diagnose` write it; RUN is a run folder, a CSV or a Parquet file.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import click
+
+from hal.errors import BadInput
+
+if TYPE_CHECKING:
+    from logs.recording import CommandTiming, FloatArray, Recording
+
+
+@click.command(name="simulate", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
+@click.argument("model", metavar="MODEL.toml", type=click.Path(path_type=Path))
+@click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
+@click.option("--out", required=True, metavar="FILE.csv", type=click.Path(path_type=Path), help="Where the columns go.")
+@click.option("--map", "mapping", metavar="time=COL,...", help="Which columns are which, in a foreign file.")
+@click.option("--units", metavar="command=kPa,...", help="Units of the columns of a foreign file.")
+@click.option("--command-timing", type=click.Choice(["before", "after", "unknown"]), default="before",
+              show_default=True, help="Whether a row's command was in force before or after its readings.")  # fmt: skip
+@click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
+def command(
+    model: Path, run: Path, out: Path, mapping: str | None, units: str | None, command_timing: str, as_json: bool
+) -> None:
+    from control.design import load_design
+    from logs.load import load_recording
+    from twin.insert import plant_of
+    from twin.model_units import in_units_of
+    from twin.simulate import simulate_recording
+
+    design = load_design(model)
+    timing = cast("CommandTiming", command_timing)
+    recording = load_recording(run, mapping=mapping, units=units, command_timing=timing)
+    try:
+        plant = plant_of(in_units_of(design, recording.pressure_unit, recording.position_unit))
+    except BadInput as error:
+        raise BadInput(f"{model}: {error}") from error
+    pressure, position = simulate_recording(plant, recording)
+    _write(out, recording, pressure, position)
+    figures = _figures(recording, plant.design.travel, pressure, position)
+    if as_json:
+        click.echo(json.dumps({"file": str(out), "model": str(plant), **figures}))
+        return
+    click.echo(f"{recording.name} through {plant}: {recording.n} rows over {recording.duration_s:.6g} s")
+    for note in recording.notes:
+        click.echo(f"note: {note.what}: {note.handled}")
+    click.echo(_sentence(recording, figures))
+    click.echo(f"written: {out}")
+
+
+def _figures(
+    recording: Recording, travel: float, pressure: FloatArray, position: FloatArray
+) -> dict[str, float | int | None]:
+    """RMS differences model against record; None where the record has no such readings."""
+    rms = _rms(recording.position, position)
+    return {
+        "rows": recording.n,
+        "position_rms": rms,
+        "position_rms_percent_of_travel": None if rms is None else 100.0 * rms / travel,
+        "pressure_rms": None if recording.pressure is None else _rms(recording.pressure, pressure),
+        "gaps": 0 if recording.gap_before is None else int(recording.gap_before.sum()),
+    }
+
+
+def _rms(measured: FloatArray, modelled: FloatArray) -> float | None:
+    import numpy as np
+
+    seen = np.isfinite(measured)
+    return float(np.sqrt(np.mean((measured[seen] - modelled[seen]) ** 2))) if seen.any() else None
+
+
+def _sentence(recording: Recording, figures: dict[str, float | int | None]) -> str:
+    parts = []
+    if figures["position_rms"] is not None:
+        parts.append(
+            f"position {figures['position_rms']:.4g} {recording.position_unit} "
+            f"({figures['position_rms_percent_of_travel']:.3g} % of travel)"
+        )
+    if figures["pressure_rms"] is not None:
+        parts.append(f"pressure {figures['pressure_rms']:.3g} {recording.pressure_unit}")
+    through = f"; the model went through {figures['gaps']} gaps with the command after them" if figures["gaps"] else ""
+    return f"RMS between model and record: {', '.join(parts)}{through}" if parts else "the record has no readings"
+
+
+def _write(out: Path, recording: Recording, pressure: FloatArray, position: FloatArray) -> None:
+    """The fixed columns, one line a row; numbers read back as the same float64."""
+    import pyarrow as pa
+    from pyarrow import csv
+
+    p, x = recording.pressure_unit, recording.position_unit
+    columns = {
+        "time_s": recording.time_s,
+        f"command_{p}": recording.command,
+        f"pressure_{p}": pressure,
+        f"position_{x}": position,
+    }
+    if recording.target is not None:
+        columns[f"target_{x}"] = recording.target
+    try:
+        with out.open("wb") as file:
+            file.write((",".join(columns) + "\n").encode())  # the library would put the names in quotes
+            csv.write_csv(pa.table(columns), file, csv.WriteOptions(include_header=False, quoting_style="none"))
+    except OSError as error:
+        raise BadInput(f"{out}: cannot be written ({error.strerror}); name a file in a folder that exists") from error
