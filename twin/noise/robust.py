@@ -63,8 +63,9 @@ def autocorrelation(
         weight = known.astype(np.float64)
         for lag in range(min(lags, piece.size - 1) + 1):
             stop = piece.size - lag
-            total[lag] += float(filled[:stop] @ filled[lag:])
-            pairs[lag] += float(weight[:stop] @ weight[lag:])
+            # einsum stays on this thread: for short pieces a pool costs more than it saves
+            total[lag] += float(np.einsum("i,i->", filled[:stop], filled[lag:]))
+            pairs[lag] += float(np.einsum("i,i->", weight[:stop], weight[lag:]))
     if lags < 0 or total[0] <= 0:
         return np.ones(1)
     covariance = total / np.maximum(pairs, 1.0)
