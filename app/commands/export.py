@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import click
@@ -34,7 +35,7 @@ def command(
     record = open_run(run, mapping, units, command_timing)
     say_problems(record)
     if csv_file is not None and str(csv_file) == "-":
-        write_csv(record, click.get_binary_stream("stdout"))
+        write_csv(record, sys.stdout.buffer)
     elif csv_file is not None:
         write_csv(record, csv_file)
         click.echo(f"{csv_file}: {record.rows} samples, {len(record.columns)} columns")

@@ -15,8 +15,9 @@ if TYPE_CHECKING:
 
     from logs.run import Run
 
-HEAD = tuple(
-    ["kind", "utc", "experiment", "controller", "profile", "seed", "note", "calibration_id", "version", "git", "uuid"]
+HEAD = (
+    *("kind", "utc", "experiment", "controller", "profile", "seed", "note", "calibration_id"),
+    *("version", "git", "uuid"),
 )
 
 
