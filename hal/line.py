@@ -53,6 +53,7 @@ class RtuLine:
             start = self._start(data, frame, request)
             found = find_reply(data[start:] if start else data, request) if start >= 0 else None
             if found is not None:
+                self.stats.noise_bytes += found[0]
                 return self._answer(data, start + found[0], start + found[1], sent_s)
             left_s = deadline_s - self._wire.now_s()
         self.stats.timeouts += 1
