@@ -45,23 +45,22 @@ class Progress:
 
 @dataclass(frozen=True, slots=True)
 class Hooks:
-    """What the operator can do meanwhile: watch, write notes, and stop (a reason, or "" to go on)."""
+    """What the operator can do meanwhile: watch, write notes, and stop: `check` then raises `KeyboardInterrupt`."""
 
     progress: Callable[[Progress], None] = lambda _: None
     notes: Callable[[], Sequence[str]] = lambda: ()
-    stop: Callable[[], str] = lambda: ""
+    check: Callable[[], None] = lambda: None
 
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a run went. `stopped` is why it ended early, "" when it did not; `steps_done` counts finished steps."""
+    """How a run went that came to its end."""
 
     rows: int
     steps_done: int
     missing: int
     overruns: int
     worst_lateness_s: float
-    stopped: str = ""
 
 
 @dataclass(slots=True)
@@ -71,7 +70,7 @@ class Loop:
     A bench that raises `WireFault` may do so `max_missing` - 1 times in a row; one that hands out missing samples
     counts them itself (the safety layer does).
 
-    Raises from `run`: `SafetyTrip`, and whatever else the bench raises.
+    Raises from `run`: `SafetyTrip`, whatever else the bench raises, and what `hooks.check` raises between two ticks.
     """
 
     bench: Bench
@@ -88,15 +87,17 @@ class Loop:
     _in_force: float = 0.0
     _missing_in_a_row: int = 0
     _steps_done: int = 0
-    _stopped: str = ""
     _state: str = ""
     _said: dict[str, int] = field(default_factory=dict)
 
-    def run(self, plan: Plan, drive: Drive) -> Outcome:
-        """Goes through the plan: its lead in open loop, its steps through `drive`."""
+    def run(self, plan: Plan, drive: Drive, in_force: float | None = None) -> Outcome:
+        """Goes through the plan: its lead in open loop, its steps through `drive`.
+
+        `in_force` is the command that the valve has before the first tick; None: the safe command.
+        """
         ticker = Ticker(self.clock, plan.period_s)
         self.origin_s = ticker.origin_s
-        self._in_force = self.bench.info.safe_command
+        self._in_force = self.bench.info.safe_command if in_force is None else in_force
         lead_drive = OpenLoopDrive()
         done_s = 0.0
         for number, step in enumerate((*plan.lead, *plan.steps), start=-len(plan.lead)):
@@ -105,13 +106,9 @@ class Loop:
             self.say_state("running" if counted else step.label or "conditioning")
             index = number + plan.first if counted else LEAD
             self._play(step, index, drive if counted else lead_drive, ticker, (done_s, plan.duration_s, name))
-            if self._stopped:
-                break
             done_s += step.duration_s
             self._steps_done += counted
-        return Outcome(
-            self.rows, self._steps_done, self.missing, ticker.overruns, ticker.worst_lateness_s, self._stopped
-        )
+        return Outcome(self.rows, self._steps_done, self.missing, ticker.overruns, ticker.worst_lateness_s)
 
     def now_s(self) -> float:
         """Time in the run [s], as in its record."""
@@ -143,9 +140,7 @@ class Loop:
             for text in self.hooks.notes():
                 for sink in self.sinks:
                     sink.note(self.now_s(), text)
-            self._stopped = self.hooks.stop()
-            if self._stopped:
-                return
+            self.hooks.check()
             if step.until_settled and elapsed_s >= step.rise_s and self._is_settled(settled, sample):
                 return
 

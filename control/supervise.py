@@ -6,7 +6,8 @@ from collections.abc import Callable
 from typing import Literal, Protocol
 
 from control.loop import Loop, Outcome
-from hal.errors import SafetyTrip
+from hal.safety import describe_way_out
+from hal.signals import shielded
 
 
 class Record(Protocol):
@@ -22,28 +23,21 @@ def supervised(loop: Loop, record: Record, job: Callable[[], Outcome]) -> Outcom
     """
     try:
         outcome = job()
-    except KeyboardInterrupt:
-        _end(loop, record, "abort", "interrupted by the operator (Ctrl-C)")
-        raise
-    except SafetyTrip as trip:
-        _end(loop, record, "fail", f"safety trip: {trip}")
-        raise
     except BaseException as error:
-        _end(loop, record, "fail", f"{type(error).__name__}: {error}")
+        with shielded():
+            _end(loop, record, error)
         raise
-    if outcome.stopped:
-        _end(loop, record, "abort", outcome.stopped)
-    else:
-        _end(loop, record, "success", "finished")
+    _end(loop, record, None)
     return outcome
 
 
-def _end(loop: Loop, record: Record, status: Literal["success", "abort", "fail"], reason: str) -> None:
+def _end(loop: Loop, record: Record, error: BaseException | None) -> None:
+    status, reason = describe_way_out(error)
     confirmed = loop.bench.make_safe(reason)
     info = loop.bench.info
     command = f"{info.safe_command:g} {info.command_unit}"
     if confirmed:
-        safe = f"the bench has confirmed the safe command, {command}"
+        safe = f"the bench confirmed its safe state ({command}, or held, as its profile says)"
     else:
         safe = f"the safe command, {command}, was NOT confirmed: check the valve"
     loop.say("info" if confirmed else "error", f"{reason}; {safe}")

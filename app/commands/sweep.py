@@ -1,0 +1,181 @@
+"""Run an experiment on the valve and record it: KIND, or an experiment file.
+
+KIND is one of staircase, nested, ramp, steps, random, multisine, hold, points; FILE.toml is an experiment file
+(docs/experiments.md). Without --port the virtual valve is swept, over Modbus frames, in stepped time.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from app.session import bench_options, open_bench, record_options
+
+if TYPE_CHECKING:
+    from app.job import Job
+    from app.session import Session
+    from control.experiment import Experiment
+
+
+@click.command(name="sweep", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
+@click.argument("what", metavar="KIND|FILE.toml", required=False)
+@bench_options
+@record_options
+@click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a number of the experiment.")
+@click.option("--period", "period_s", type=float, metavar="S", help="Time between two samples [s].")
+@click.option("--resume", metavar="RUN", type=click.Path(path_type=Path), help="Go on with a sweep that was stopped.")
+@click.option("--write", "write_to", metavar="FILE.toml", type=click.Path(path_type=Path), help="Only write the file.")
+@click.option("--dry-run", is_flag=True, help="Show duration, range and a sketch; touch nothing.")
+@click.option("--json", "as_json", is_flag=True, help="Print the outcome as JSON.")
+def command(
+    what: str | None,
+    port: str | None,
+    profile: str | None,
+    physics: str | None,
+    seed: int,
+    real_time: bool,
+    effects: tuple[str, ...],
+    out: Path | None,
+    note: str,
+    operator: str,
+    live: bool,
+    settings: tuple[str, ...],
+    period_s: float | None,
+    resume: Path | None,
+    write_to: Path | None,
+    dry_run: bool,
+    as_json: bool,
+) -> None:
+    from control.experiment_file import save_experiment
+    from hal.profile import load_profile
+
+    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    experiment, first, continues = _experiment(what, resume, settings, seed, found.command_unit)
+    if period_s is not None:
+        experiment = replace(experiment, period_s=period_s)
+    if write_to is not None:
+        save_experiment(experiment, write_to)
+        click.echo(f"wrote {write_to}")
+        return
+    if dry_run:
+        _preview(experiment, first, as_json)
+        return
+    from app.job import perform
+
+    with open_bench(port, found, physics=physics, seed=seed, real_time=real_time, effects=effects) as session:
+        job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
+        _announce(session, experiment, job, as_json)
+        done = perform(session, job, out=out, live=live, title=experiment.kind)
+    if as_json:
+        click.echo(json.dumps({"run": str(done.folder), **_plain(done.outcome)}))
+        return
+    click.echo(
+        f"done: {done.outcome.rows} samples, {done.outcome.missing} missing, {done.outcome.overruns} overruns, "
+        f"worst lateness {done.outcome.worst_lateness_s * 1e3:.2f} ms; the valve is at its safe command"
+    )
+    click.echo(f"record: {done.folder}")
+
+
+def _plain(outcome: object) -> dict[str, object]:
+    from dataclasses import asdict
+
+    return asdict(outcome)  # type: ignore[call-overload, no-any-return]
+
+
+def _experiment(
+    what: str | None, resume: Path | None, settings: tuple[str, ...], seed: int, unit: str
+) -> tuple[Experiment, int, dict[str, object]]:
+    """The experiment, the step it begins with, and what the record says about the run it continues."""
+    from control.experiment_catalog import make_experiment, parse_settings
+    from control.experiment_file import from_plain, load_experiment, to_plain
+    from hal.errors import BadInput
+
+    if (what is None) == (resume is None):
+        raise BadInput("name an experiment kind or file, or a run to go on with: sweep KIND|FILE.toml, or --resume RUN")
+    given = parse_settings(settings)
+    if resume is not None:
+        if given:
+            raise BadInput("--resume goes on with the experiment of that run as it is; leave out --set")
+        return _resumed(resume)
+    assert what is not None
+    if what.endswith(".toml"):
+        loaded = to_plain(load_experiment(Path(what)))
+        return from_plain({**loaded, **given}, what), 0, {}
+    return make_experiment(what, {"unit": unit, "seed": seed, **given}), 0, {}
+
+
+def _resumed(path: Path) -> tuple[Experiment, int, dict[str, object]]:
+    from control.experiment_file import from_plain
+    from hal.errors import BadInput
+    from logs.run import read_run
+
+    run = read_run(path)
+    content = run.start.get("experiment")
+    if not isinstance(content, dict):
+        raise BadInput(f"{path}: this run has no experiment to go on with; it is a '{run.kind}'")
+    if run.running:
+        raise BadInput(f"{path}: this run is still being recorded; stop it first")
+    if run.status == "success":
+        raise BadInput(f"{path}: this run is complete; there is nothing to go on with")
+    steps = run.columns.get("step")
+    first = 0 if steps is None or not steps.size else max(0, int(steps[-1]))
+    return from_plain(content, str(path)), first, {"continues": str(run.start.get("uuid", path)), "first_step": first}
+
+
+def _job(session: Session, experiment: Experiment, first: int, about: dict[str, object]) -> Job:
+    from app.job import Job
+    from control.drive import OpenLoopDrive
+    from control.experiment_file import to_plain
+    from control.plan import check_bench, plan_experiment
+
+    plan = plan_experiment(experiment, first)
+    check_bench(plan, experiment.unit, *experiment.range, session.bench.info)
+    note = about.pop("note") or experiment.note
+    return Job(
+        "sweep", plan, lambda _: OpenLoopDrive(), about={"experiment": to_plain(experiment), "note": note, **about}
+    )
+
+
+def _announce(session: Session, experiment: Experiment, job: Job, as_json: bool) -> None:
+    from control.preview import duration_words
+
+    low, high = experiment.range
+    click.echo(
+        f"{experiment.kind} on {session.title}: {duration_words(job.plan.duration_s)}, "
+        f"commands {low:g} to {high:g} {experiment.unit} every {experiment.period_s:g} s. The valve will move.",
+        err=as_json,
+    )
+
+
+def _preview(experiment: Experiment, first: int, as_json: bool) -> None:
+    from control.plan import plan_experiment
+    from control.preview import duration_words, with_scale
+
+    plan = plan_experiment(experiment, first)
+    schedule = experiment.commands()
+    low, high = experiment.range
+    facts = {
+        "kind": experiment.kind,
+        "duration_s": plan.duration_s,
+        "low": low,
+        "high": high,
+        "unit": experiment.unit,
+        "steps": len(plan.steps),
+        "first_step": first,
+        "samples": round(plan.duration_s / experiment.period_s),
+        "period_s": experiment.period_s,
+    }
+    if as_json:
+        click.echo(json.dumps(facts))
+        return
+    longest = "at most " if experiment.until_settled else ""
+    click.echo(
+        f"{experiment.kind}: {longest}{duration_words(plan.duration_s)}, {low:g} to {high:g} {experiment.unit}, "
+        f"{len(plan.steps)} steps, {facts['samples']} samples, one every {experiment.period_s:g} s. Nothing was moved."
+    )
+    for line in with_scale(schedule.command, experiment.unit):
+        click.echo(line)

@@ -1,0 +1,98 @@
+"""A recorded run from start to end: record, view, progress, signals; what `sweep`, `run` and `demo` have in common."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from contextlib import ExitStack
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from app.session import Session
+
+if TYPE_CHECKING:
+    from control.drive import Drive
+    from control.loop import Outcome
+    from control.plan import Plan
+    from logs.stream import RunView
+    from logs.writer import RunWriter
+
+
+@dataclass(frozen=True, slots=True)
+class Job:
+    """What to do and what the record should know of it. `about` goes into the start document as it is."""
+
+    kind: str
+    plan: Plan
+    make_drive: Callable[[float], Drive]  # from the command in force at the start
+    closed_loop: bool = False
+    about: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class Finished:
+    """Where the record is and how the run went."""
+
+    folder: Path
+    outcome: Outcome
+
+
+def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: str) -> Finished:
+    """Runs the job on the bench of the session.
+
+    Raises: `KeyboardInterrupt` when the operator stopped it, `JobFailed` when the bench did; in both cases after the
+    valve has been sent to its safe command and the record is closed.
+    """
+    from app.console import KeyboardNotes, RunDisplay
+    from control.loop import Hooks, Loop
+    from control.row import columns_of
+    from control.supervise import supervised
+    from hal.signals import stop_signals
+    from logs.writer import RunWriter
+
+    info = session.bench.info
+    columns = columns_of(info, closed_loop=job.closed_loop, aux_units=session.aux_units)
+    start = _start(session, job)
+    with ExitStack() as stack:
+        stop = stack.enter_context(stop_signals())
+        record = stack.enter_context(RunWriter.create(out, start, columns))
+        view = _open_view(record, columns) if live else None
+        if view is not None:
+            stack.callback(view.close)
+        display = stack.enter_context(RunDisplay(title))
+        notes = KeyboardNotes()
+        stack.callback(notes.close)
+        hooks = Hooks(progress=display.show, notes=notes, check=stop.check)
+        sinks = (record,) if view is None else (record, view)
+        loop = Loop(session.bench, session.clock, sinks, hooks, aux=tuple(session.aux_units))
+        begun = session.command_in_force
+        outcome = supervised(loop, record, lambda: loop.run(job.plan, job.make_drive(begun), begun))
+    return Finished(record.folder, outcome)
+
+
+def _start(session: Session, job: Job) -> dict[str, object]:
+    bench = asdict(session.bench.info)
+    profile = bench.pop("profile")
+    calibration = session.profile.calibration
+    return {
+        "kind": job.kind,
+        "bench": bench,
+        "profile": profile,
+        "calibration": None if calibration is None else calibration.id,
+        "virtual": dict(session.virtual) or None,
+        "period_s": job.plan.period_s,
+        **job.about,
+    }
+
+
+def _open_view(record: RunWriter, columns: Mapping[str, str]) -> RunView:
+    from click import echo
+
+    from logs.stream import RunView
+
+    view = RunView.open(record.start, columns)
+    if view.uri:
+        echo(f"live view: {view.uri}  (rerun --connect {view.uri})", err=True)
+    else:
+        echo(f"live view: off ({view.trouble})", err=True)
+    return view

@@ -1,0 +1,164 @@
+"""Opening a bench: a real one at a port, or a virtual valve in this process that is spoken to as if it were real.
+
+The virtual valve sits behind a pseudo-terminal and answers Modbus frames; its time is stepped by the loop, so that a
+20-minute sweep takes seconds. With `real_time` it takes 20 minutes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from hal.clock import Clock
+    from hal.profile import Profile
+    from hal.safety import SafeBench
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+@dataclass(frozen=True, slots=True)
+class Session:
+    """An open bench. `virtual` describes the virtual valve behind it as plain values; empty for a real bench."""
+
+    bench: SafeBench
+    clock: Clock
+    profile: Profile
+    virtual: Mapping[str, object]
+
+    @property
+    def aux_units(self) -> dict[str, str]:
+        """The auxiliary channels of the profile and their units."""
+        return {name: register.unit for name, register in self.profile.signals.aux.items()}
+
+    @property
+    def command_in_force(self) -> float:
+        """The command that the valve has before the first tick."""
+        held = getattr(self.bench.bench, "held_command", None)
+        return self.bench.info.safe_command if held is None else float(held)
+
+    @property
+    def title(self) -> str:
+        """The bench in a few words for the operator."""
+        port = self.bench.info.port
+        if not self.virtual:
+            return f"bench '{self.profile.name}' on {port}"
+        return f"the virtual valve ('{self.virtual['physics']}') behind {port}, Modbus RTU, {self.virtual['time']} time"
+
+
+def bench_options(command: F) -> F:
+    """`--port --profile --physics --seed --effect --real-time`: which bench. The same words in every verb."""
+    options = (
+        click.option("--port", metavar="PORT", help="Serial port, or tcp://HOST:PORT. Without it: the virtual valve."),
+        click.option("--profile", metavar="FILE|NAME", help="Bench profile.  [default: virtual]"),
+        click.option("--physics", metavar="NAME", help="Plant of the virtual valve.  [default: thesis]"),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all chance."),
+        click.option(
+            "--effect", "effects", metavar="NAME=SIZE", multiple=True, help="Imperfection of the virtual valve."
+        ),
+        click.option("--real-time", is_flag=True, help="Let the virtual valve live in real time."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def record_options(command: F) -> F:
+    """`--out --note --operator --live`: what is kept of a run, and who watches."""
+    options = (
+        click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Run folder; new or empty."),
+        click.option("--note", default="", help="What the record should say about this run."),
+        click.option("--operator", default="", help="Who runs it."),
+        click.option("--live", is_flag=True, help="Stream to rerun while running."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+@contextmanager
+def open_bench(
+    port: str | None = None,
+    profile: str | Path | Profile | None = None,
+    *,
+    physics: str | None = None,
+    seed: int = 0,
+    options: Mapping[str, object] | None = None,
+    effects: Sequence[str] = (),
+    real_time: bool = False,
+    acknowledge: bool = False,
+) -> Iterator[Session]:
+    """Opens the bench of a profile at `port`; without one, a virtual valve with plant `physics`.
+
+    `options` go to the plant (`effects={"stiction": 0.4}`, `noise=0.0`, its design numbers); `effects` are more of
+    them as words, "stiction=0.4".
+    However the context is left, the valve is at its safe command and the port is closed.
+    Raises: `BadInput`, `PortFault`, `WireFault`, `SafetyTrip`.
+    """
+    from hal.clock import RealClock
+    from hal.errors import BadInput
+    from hal.modbus_bench import ModbusBench
+    from hal.profile import Profile, load_profile
+    from hal.safety import SafeBench
+
+    found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
+    if port is not None:
+        if physics or options or real_time or effects:
+            raise BadInput(
+                "--physics, --effect and --real-time belong to the virtual valve; leave them out with --port"
+            )
+        clock: Clock = RealClock()
+        with SafeBench(ModbusBench(found, port, clock, acknowledge=acknowledge), found.limits, clock) as bench:
+            yield Session(bench, clock, found, {})
+        return
+    plant_options = dict(options or {})
+    if effects:
+        plant_options["effects"] = _parse_effects(effects)
+    with _virtual(found, physics, seed, plant_options, real_time) as session:
+        yield session
+
+
+def _parse_effects(words: Sequence[str]) -> dict[str, float]:
+    from hal.errors import BadInput
+
+    found = {}
+    for word in words:
+        name, equals, size = word.partition("=")
+        try:
+            found[name.strip()] = float(size)
+        except ValueError as error:
+            raise BadInput(f"--effect {word!r} is not of the form NAME=SIZE, for example stiction=0.4") from error
+        if not (name.strip() and equals):
+            raise BadInput(f"--effect {word!r} is not of the form NAME=SIZE, for example stiction=0.4")
+    return found
+
+
+@contextmanager
+def _virtual(
+    profile: Profile, physics: str | None, seed: int, options: dict[str, object], real_time: bool
+) -> Iterator[Session]:
+    from hal.clock import RealClock, SteppedClock
+    from hal.modbus_bench import ModbusBench
+    from hal.safety import SafeBench
+    from sim_device.physics.catalog import make_physics
+    from sim_device.server import VirtualDevice
+
+    name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
+    clock: Clock = RealClock() if real_time else SteppedClock()
+    plant = make_physics(name, seed, **options)
+    said: dict[str, object] = {
+        "physics": name,
+        "seed": seed,
+        "options": options,
+        "time": "real" if real_time else "stepped",
+    }
+    with VirtualDevice(profile, plant, clock) as device:
+        # A pseudo-terminal has no bits on a wire, so there is no silence to keep between frames.
+        inner = ModbusBench(profile, device.port, clock, pacing="none")
+        with SafeBench(inner, profile.limits, clock) as bench:
+            yield Session(bench, clock, profile, said)

@@ -1,0 +1,146 @@
+"""First stage: the converter's lag from command to pressure, and a pressure that is fit to drive the play.
+
+Raw readings must not drive it: every peak of the noise pushes the play a little further and nothing pulls it back.
+The pressure handed on is the fitted response to the command plus what is left of the readings after a zero-phase
+moving average, whose width is the one that best predicts readings it has not seen.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from control.identify_interval import Interval, intervals
+from control.identify_model import Grid, lagged
+from logs.recording import FloatArray
+
+WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
+BLIND_S = 0.5  # readings closer than this share their noise and do not count as unseen
+TAU_RANGE_S = (0.005, 60.0)
+GAIN_TOLERANCE = 0.005
+
+
+@dataclass(frozen=True, slots=True)
+class PressureStage:
+    """pressure = gain * lag(command) + zero. `tau_s` is None where the record does not tell."""
+
+    tau_s: Interval | None
+    gain: float
+    zero: float
+    rms: float
+    width_s: float
+    fine: FloatArray  # the pressure that drives the play, on the fine grid
+
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether the transmitter agrees with the command within half a percent of its span of 20 psi or so."""
+        return abs(self.gain - 1.0) < 4.0 * GAIN_TOLERANCE
+
+
+def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_tau_s: float) -> PressureStage:
+    """Fits the lag to readings, shape (n,), NaN where missing; keeps `default_tau_s` where it cannot be told."""
+    from scipy.optimize import minimize_scalar
+
+    good = np.isfinite(pressure)
+    moves = bool(np.ptp(command[good]) > 20.0 * _fast_noise(pressure[good]))
+    log_tau = np.log(default_tau_s or 1e-3)
+    if moves:
+        coarse = np.linspace(np.log(TAU_RANGE_S[0]), np.log(TAU_RANGE_S[1]), 24)
+        best = coarse[int(np.argmin([_project(grid, command, pressure, good, np.exp(z)).cost for z in coarse]))]
+        step = coarse[1] - coarse[0]
+        found = minimize_scalar(
+            lambda z: _project(grid, command, pressure, good, np.exp(z)).cost,
+            bounds=(best - step, best + step),
+            method="bounded",
+            options={"xatol": 1e-5},
+        )
+        log_tau = float(found.x)
+    shape = _project(grid, command, pressure, good, float(np.exp(log_tau)))
+    interval = _interval(grid, command, pressure, good, log_tau) if moves else None
+    if interval is None or interval.half_width > 0.5 * interval.value:
+        interval = None
+        shape = _project(grid, command, pressure, good, default_tau_s)
+    rest = np.where(good, pressure - shape.rows, 0.0)
+    width_s = _best_width_s(grid.time_s, rest, good) if good.sum() > 20 else 0.0
+    correction = moving_average(grid.time_s, rest, good, width_s)
+    fine = shape.fine + np.interp(np.arange(grid.n_fine), grid.first, correction)
+    rms = float(np.sqrt(np.mean(rest[good] ** 2)))
+    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, fine)
+
+
+@dataclass(frozen=True, slots=True)
+class _Shape:
+    cost: float
+    gain: float
+    zero: float
+    rows: FloatArray
+    fine: FloatArray
+
+
+def _project(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, tau_s: float) -> _Shape:
+    """The best gain, zero and start for one time constant, by least squares that a few false readings cannot pull."""
+    fine = lagged(grid, command, tau_s, float(command[0]))
+    start = np.exp(-(grid.fine_time_s - grid.time_s[0]) / max(tau_s, 1e-6))
+    rows, fade = fine[grid.first], start[grid.first]
+    columns = np.column_stack((rows, np.ones_like(rows), fade))
+    if np.ptp(rows[good]) < 1e-9:
+        columns = columns[:, 1:]
+    weight = good.astype(np.float64)
+    target = np.where(good, pressure, 0.0)
+    for _ in range(3):
+        root = np.sqrt(weight)[:, None]
+        found = np.linalg.lstsq(columns * root, target * root[:, 0], rcond=None)[0]
+        rest = np.where(good, pressure - columns @ found, 0.0)
+        limit = 3.0 * 1.4826 * float(np.median(np.abs(rest[good]))) + 1e-12
+        weight = good * np.minimum(1.0, limit / np.maximum(np.abs(rest), 1e-12))
+    gain = float(found[0]) if columns.shape[1] == 3 else 1.0
+    zero = float(found[-2]) if columns.shape[1] == 3 else float(found[0] - np.mean(rows[good]))
+    cost = float(np.sum(weight * rest**2))
+    full = gain * fine + zero + float(found[-1]) * start
+    return _Shape(cost, gain, zero, full[grid.first], full)
+
+
+def _interval(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, log_tau: float) -> Interval:
+    step = 1e-3
+    at, above, below = (_project(grid, command, pressure, good, float(np.exp(log_tau + z))) for z in (0.0, step, -step))
+    slope = (above.rows - below.rows)[good] / (2.0 * step)
+    rest = (pressure - at.rows)[good]
+    limit = 3.0 * 1.4826 * float(np.median(np.abs(rest))) + 1e-12
+    found = intervals(np.array([log_tau]), slope[:, None], np.clip(rest, -limit, limit))[0]
+    tau_s = float(np.exp(log_tau))
+    return Interval(tau_s, tau_s * np.exp(found.low - log_tau), tau_s * np.exp(found.high - log_tau))
+
+
+def _fast_noise(values: FloatArray) -> float:
+    return float(1.4826 * np.median(np.abs(np.diff(values))) / np.sqrt(2.0)) if values.size > 2 else 0.0
+
+
+def moving_average(time_s: FloatArray, values: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:
+    """Mean of the good values within +-width/2 of each row; zero phase, shortened at the ends and across gaps."""
+    total, count = _sums(time_s, values, good, 0.5 * width_s)
+    return np.divide(total, count, out=np.zeros_like(total), where=count > 0)
+
+
+def _sums(time_s: FloatArray, values: FloatArray, good: np.ndarray, reach_s: float) -> tuple[FloatArray, FloatArray]:
+    sums = np.concatenate((np.zeros(1), np.cumsum(np.where(good, values, 0.0))))
+    counts = np.concatenate((np.zeros(1), np.cumsum(good.astype(np.float64))))
+    low = np.searchsorted(time_s, time_s - reach_s - 1e-9)
+    high = np.searchsorted(time_s, time_s + reach_s + 1e-9)
+    return sums[high] - sums[low], counts[high] - counts[low]
+
+
+def _best_width_s(time_s: FloatArray, rest: FloatArray, good: np.ndarray) -> float:
+    """The width whose average, without the readings next to it, predicts a reading best; wider on a tie."""
+    blind, blind_count = _sums(time_s, rest, good, BLIND_S)
+    best, best_cost = WIDTHS_S[-1], np.inf
+    for width_s in reversed(WIDTHS_S):
+        total, count = _sums(time_s, rest, good, 0.5 * width_s + BLIND_S)
+        seen = good & (count - blind_count >= 2)
+        if seen.sum() < 0.5 * good.sum():
+            continue
+        guess = (total - blind)[seen] / (count - blind_count)[seen]
+        cost = float(np.mean(np.minimum(np.abs(rest[seen] - guess), 5.0 * (np.std(rest[good]) + 1e-12)) ** 2))
+        if cost < 0.995 * best_cost:
+            best, best_cost = width_s, cost
+    return best
