@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import ctypes
+import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from hal.clock import Clock
 from sim_device.framer import rtu_idle_s
+
+_PR_SET_TIMERSLACK = 29  # from linux/prctl.h; the value is in nanoseconds
 
 
 @dataclass(frozen=True)
@@ -25,6 +29,12 @@ class Pace:
         """When a slave may start to answer: the request has crossed the wire, and the line was silent after it."""
         silence_s = rtu_idle_s(self.baud, self.bits_per_char) if self.turnaround_s is None else self.turnaround_s
         return request_arrived_s + request_bytes * self.char_s + silence_s
+
+
+def sharpen_timer() -> None:
+    """Asks Linux to wake this thread when it said, not up to 50 us later; elsewhere, does nothing."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
 def emit(data: bytes, start_s: float, pace: Pace, clock: Clock, write: Callable[[bytes], None]) -> None:

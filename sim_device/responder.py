@@ -12,7 +12,7 @@ from hal.clock import Clock
 from sim_device.faults import FaultyLine
 from sim_device.framer import RequestFramer
 from sim_device.line import Line
-from sim_device.pacing import Pace, emit
+from sim_device.pacing import Pace, emit, sharpen_timer
 
 
 class Stop:
@@ -64,6 +64,8 @@ class Responder:
 
     def serve(self, fd: int, *, until_eof: bool) -> None:
         """Answers until the stop is set, or the far end closes (`until_eof`: a socket; a pty waits for the next)."""
+        if self._pace is not None:
+            sharpen_timer()
         poll = select.poll()
         poll.register(fd, select.POLLIN)
         poll.register(self._stop.read_fd, select.POLLIN)
