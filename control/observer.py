@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, replace
 
 from control.controller import Seen
+from control.dead_time import DeadTime, no_dead_time
 from control.design import DesignModel
 
 MIDDLE_PSI = 9.0
@@ -19,7 +20,8 @@ MIDDLE_PSI = 9.0
 class Inside:
     """The estimate at one instant. Pressures in psi, positions in inches; `a1`, `a2` are the edges as learned so far.
 
-    A command u settles at u + `bias` + `slope` (u - 9 psi): the converter's zero and gain error.
+    A command u settles at u + `bias` + `slope` (u - 9 psi): the converter's zero and gain error. `seen_psi` is the last
+    pressure reading.
     """
 
     p: float
@@ -27,6 +29,8 @@ class Inside:
     x: float
     a1: float
     a2: float
+    seen_psi: float
+    line: DeadTime
     bias: float = 0.0
     slope: float = 0.0
 
@@ -51,10 +55,26 @@ class Observer:
         """At rest at the reading; edges from the design, moved where the reading contradicts them."""
         d = self.design
         w = min(max(seen.position_in, 0.0), d.travel)
-        return self._consistent(self._stopped(Inside(seen.pressure_psi, w, seen.position_in, d.a1, d.a2)))
+        return self._consistent(self._stopped(self._first(seen, w)))
+
+    def _first(self, seen: Seen, w: float) -> Inside:
+        line = no_dead_time(seen.commanded_psi)
+        return Inside(seen.pressure_psi, w, seen.position_in, self.design.a1, self.design.a2, seen.pressure_psi, line)
+
+    def track(self, inside: Inside, seen: Seen, dt_s: float, omega: float) -> tuple[Inside, Inside]:
+        """The estimate for the next tick, and the one for the instant at which the next command begins to act.
+
+        `inside` is what this gave for the instant of the reading; `omega` is the bandwidth of the correction [rad/s].
+        """
+        keep = self.correct(inside, seen, dt_s, omega)
+        keep = self.ahead(keep, keep.line.arriving, dt_s)
+        acts = keep
+        for command_psi in keep.line.queued:
+            acts = self.ahead(acts, command_psi, dt_s)
+        return keep, acts
 
     def correct(self, inside: Inside, seen: Seen, dt_s: float, omega: float) -> Inside:
-        """The estimate for the instant of the reading, after looking at it, with the bandwidth `omega` [rad/s]."""
+        """The estimate for the instant of the reading, after looking at it."""
         d, k = self.design, self.design.compliance
         pressure_error = seen.pressure_psi - inside.p
         p = inside.p + self.pressure_gain * pressure_error
@@ -64,7 +84,7 @@ class Observer:
         running = abs(inside.w - inside.x) > d.rate_limit * d.tau_s
         if running and push * (inside.w - inside.x) > 0.0:
             push = 0.0  # faster than the limit says nothing of how far the play output is ahead
-        moved = self._stopped(replace(self._converter(inside, pressure_error, seen.commanded_psi, dt_s), p=p, x=x))
+        moved = self._stopped(replace(self._converter(inside, pressure_error, seen, dt_s), p=p, x=x))
         if moved.w <= 0.0 or moved.w >= d.travel:
             return self._at_stop(moved, push)
         closing, opening = self.contact(inside)
@@ -76,14 +96,17 @@ class Observer:
             moved = replace(moved, w=inside.w + push)
         return self._consistent(moved)
 
-    def _converter(self, inside: Inside, pressure_error: float, command_psi: float, dt_s: float) -> Inside:
-        """Zero and gain error learned while the pressure is near its command (normalized least mean squares)."""
-        if abs(inside.settles(command_psi) - inside.p) > 0.7:
-            return inside
+    def _converter(self, inside: Inside, pressure_error: float, seen: Seen, dt_s: float) -> Inside:
+        """Dead time, and (by normalized least mean squares, near the command) zero and gain error, as learned."""
         share = 1.0 - math.exp(-dt_s / self.design.ep_tau_s) if self.design.ep_tau_s > 0.0 else 1.0
+        before_psi, command_psi = inside.seen_psi, inside.line.arriving
+        line = inside.line.judged(seen.pressure_psi, lambda u: before_psi + share * (inside.settles(u) - before_psi))
+        moved = replace(inside, line=line.and_sent(seen.commanded_psi), seen_psi=seen.pressure_psi)
+        if abs(inside.settles(command_psi) - inside.p) > 0.7:
+            return moved
         lever = (command_psi - MIDDLE_PSI) / 2.0
         step = self.bias_gain * pressure_error / share / (1.0 + lever**2)
-        return replace(inside, bias=inside.bias + step, slope=min(max(inside.slope + step * lever / 2.0, -0.1), 0.1))
+        return replace(moved, bias=inside.bias + step, slope=min(max(inside.slope + step * lever / 2.0, -0.1), 0.1))
 
     def contact(self, inside: Inside) -> tuple[bool, bool]:
         """Whether the play is in contact on its closing and on its opening side."""

@@ -1,4 +1,4 @@
-"""Backlash inverse: PI on the position asks for a play output, the inverse turns it into a pressure, the width adapts."""
+"""Backlash inverse: PI on the position asks for a play output; the inverse makes it a pressure; its width adapts."""
 
 from __future__ import annotations
 
@@ -39,14 +39,13 @@ class InversePi(Law[InverseState]):
 
     def law(self, state: InverseState, seen: Seen, target_in: float, dt_s: float) -> tuple[InverseState, float]:
         observer = Observer(self.design)
-        now = observer.correct(state.inside, seen, dt_s, self.omega)
-        soon = observer.ahead(now, seen.commanded_psi, dt_s)
+        keep, soon = observer.track(state.inside, seen, dt_s, self.omega)
         error_in = target_in - soon.x
         near = abs(error_in) < self.window_in
         integral_in = state.integral_in + self.ki * error_in * dt_s if near else 0.0
         integral_in = min(max(integral_in, -self.window_in), self.window_in)
         aim_psi = self._aim_psi(observer, soon, target_in + self.kp * error_in + integral_in, state.aim_psi)
-        return InverseState(soon, integral_in, aim_psi), soon.command_for(aim_psi)
+        return InverseState(keep, integral_in, aim_psi), soon.command_for(aim_psi)
 
     def _aim_psi(self, observer: Observer, inside: Inside, wish_in: float, aim_psi: float) -> float:
         k, travel = self.design.compliance, self.design.travel

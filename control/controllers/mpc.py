@@ -30,7 +30,7 @@ class Mpc(Law[MpcState]):
     """Every tick a few dozen plans over `horizon_s` are predicted; the first command of the cheapest goes out.
 
     A plan is: stay; or drive one side of the play ahead for some ticks (or none), then put the pressure on the edge
-    that leaves the play output on the target. Cost: mean distance to the target over the horizon plus twice the distance
+    that leaves the play output on the target. Cost: mean distance to the target over the horizon plus twice that
     at its end, in inches, plus `move_cost_in` for leaving the pressure that is held: that is what prevents hunting.
     `model` predicts positions for plans; the default is the design model with the edges learned by the observer.
     """
@@ -47,7 +47,7 @@ class Mpc(Law[MpcState]):
     def law(self, state: MpcState, seen: Seen, target_in: float, dt_s: float) -> tuple[MpcState, float]:
         observer = Observer(self.design)
         omega = max(self.omega / (1.0 + 0.5 * state.quiet_s), 0.3)
-        soon = observer.ahead(observer.correct(state.inside, seen, dt_s, omega), seen.commanded_psi, dt_s)
+        keep, soon = observer.track(state.inside, seen, dt_s, omega)
         steps = max(int(self.horizon_s / dt_s), 8)
         aims = np.array(list(self._plans(soon, target_in, state.aim_psi, steps)))
         miss = np.abs(self.model(observer, soon, self._commands(soon, aims), dt_s) - target_in)
@@ -56,7 +56,7 @@ class Mpc(Law[MpcState]):
         best = int(np.argmin(cost))
         quiet_s = state.quiet_s + dt_s if best == 0 else 0.0
         aim_psi = float(aims[best, 0])
-        return MpcState(soon, aim_psi, quiet_s), float(self._commands(soon, aims[best : best + 1, :1])[0, 0])
+        return MpcState(keep, aim_psi, quiet_s), float(self._commands(soon, aims[best : best + 1, :1])[0, 0])
 
     def _plans(self, inside: Inside, target_in: float, aim_psi: float, steps: int) -> Iterator[FloatArray]:
         """Pressures to aim at, one row of `steps` per plan [psi]; the first plan stays where it is."""
@@ -80,7 +80,8 @@ class Mpc(Law[MpcState]):
         away = aims - before
         pressures = before + np.where(np.abs(away) > 0.1, self.lead, 1.0) * away
         commands = (pressures - inside.bias + inside.slope * 9.0) / (1.0 + inside.slope)
-        return np.clip(commands, self.min_psi, self.max_psi)
+        clipped: FloatArray = np.clip(commands, self.min_psi, self.max_psi)
+        return clipped
 
 
 CONTROLLER = Mpc

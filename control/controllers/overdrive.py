@@ -11,14 +11,17 @@ from control.observer import Inside, Observer
 
 @dataclass(frozen=True, slots=True)
 class OverdriveState:
-    """The estimate of the inside at the next instant; `drive` is +1 closing, -1 opening, 0 settling; the aim
-    [psi]; for how long it has not changed [s]."""
+    """The estimate of the inside at the next instant; `drive` is +1 closing, -1 opening, 0 settling; the aim [psi];
+    for how long it has not changed [s]; the side that the play output was last pushed to while settling, and how often
+    it has been turned back for this target."""
 
     inside: Inside
     drive: int
     target_in: float
     aim_psi: float
     quiet_s: float = 0.0
+    side: int = 0
+    turns: int = 0
 
 
 @dataclass(frozen=True)
@@ -31,14 +34,16 @@ class Overdrive(Law[OverdriveState]):
     there is no limit cycle. Pressure readings and edges are learned on the way (observer).
 
     `lead` sharpens the converter's response; `again_in` [in] is the miss that is worth a new drive; `same_in`,
-    `back_in` are the tolerances for pushing on and for turning back through the deadband.
+    `back_in` are the tolerances for pushing on and for turning back through the deadband, and `short_in` is how
+    much less than the miss is asked for when turning back.
     """
 
     approach_s: float = 0.6
     lead: float = 2.0
     again_in: float = 0.012
-    same_in: float = 0.0004
-    back_in: float = 0.0011
+    same_in: float = 0.0005
+    back_in: float = 0.0009
+    short_in: float = 0.0006
     omega: float = 1.2
 
     def start(self, seen: Seen, target_in: float) -> OverdriveState:
@@ -46,12 +51,21 @@ class Overdrive(Law[OverdriveState]):
 
     def law(self, state: OverdriveState, seen: Seen, target_in: float, dt_s: float) -> tuple[OverdriveState, float]:
         observer = self._observer
-        now = observer.correct(state.inside, seen, dt_s, max(self.omega / (1.0 + 0.5 * state.quiet_s), 0.3))
-        soon = observer.ahead(now, seen.commanded_psi, dt_s)
+        keep, soon = observer.track(state.inside, seen, dt_s, max(self.omega / (1.0 + 0.5 * state.quiet_s), 0.25))
         drive = self._drive(state, soon, target_in, dt_s)
-        aim_psi = self._drive_psi(soon, target_in, drive) if drive else self._settle_psi(soon, target_in, state.aim_psi)
+        same = abs(target_in - state.target_in) < self.same_in
+        side, turns = state.side, state.turns if same else 0
+        if drive:
+            side, aim_psi = 0, self._drive_psi(soon, target_in, drive)
+        elif self._at_stop(target_in):
+            aim_psi = self._stop_psi(soon, target_in, state.aim_psi)
+        else:
+            pushed = self._push(soon, target_in, turns)
+            turns += 1 if side * pushed < 0 else 0
+            side = pushed or side
+            aim_psi = self._approach_psi(soon, target_in, pushed) if pushed else state.aim_psi
         quiet_s = state.quiet_s + dt_s if aim_psi == state.aim_psi else 0.0
-        return OverdriveState(soon, drive, target_in, aim_psi, quiet_s), self._command_psi(soon, aim_psi)
+        return OverdriveState(keep, drive, target_in, aim_psi, quiet_s, side, turns), self._command_psi(soon, aim_psi)
 
     @property
     def _observer(self) -> Observer:
@@ -89,24 +103,34 @@ class Overdrive(Law[OverdriveState]):
     def _edge_psi(self, inside: Inside, position_in: float, side: int) -> float:
         return (inside.a1 if side > 0 else inside.a2) + position_in / self.design.compliance
 
+    def _approach_psi(self, inside: Inside, target_in: float, side: int) -> float:
+        """Towards the target; through the deadband a little short of it, because pushing on is cheaper than back."""
+        short_in = 0.0 if self._observer.contact(inside)[0 if side > 0 else 1] else self.short_in
+        return self._edge_psi(inside, target_in - side * short_in, side)
+
     def _drive_psi(self, inside: Inside, target_in: float, drive: int) -> float:
         speed = min(self.design.rate_limit, abs(target_in - inside.x) / self.approach_s)
         return self._edge_psi(inside, inside.x + drive * speed * self.design.tau_s, drive)
 
-    def _settle_psi(self, inside: Inside, target_in: float, aim_psi: float) -> float:
-        if self._at_stop(target_in):
-            return self._stop_psi(inside, target_in)
+    def _push(self, inside: Inside, target_in: float, turns: int) -> int:
+        """The side on which the play output has to be pushed to reach the target; 0 where it is near enough.
+
+        Every time that it had to be turned back makes it more patient: where friction or a dead time defeats small
+        corrections, an error that stays is better than hunting.
+        """
         miss_in = target_in - inside.w
         closing, opening = self._observer.contact(inside)
         side = 1 if miss_in > 0.0 else -1
-        tolerance_in = self.same_in if (closing if side > 0 else opening) else self.back_in
-        return self._edge_psi(inside, target_in, side) if abs(miss_in) > tolerance_in else aim_psi
+        back_in = self.back_in * (1.0 + 0.3 * max(turns - 5, 0))
+        return side if abs(miss_in) > (self.same_in if (closing if side > 0 else opening) else back_in) else 0
 
-    def _stop_psi(self, inside: Inside, target_in: float) -> float:
-        """Well beyond the edge: an end stop forgives."""
-        closed = target_in > 0.5 * self.design.travel
-        reach_in = self.design.rate_limit * self.design.tau_s
-        return self._edge_psi(inside, target_in + math.copysign(reach_in, 1 if closed else -1), 1 if closed else -1)
+    def _stop_psi(self, inside: Inside, target_in: float, aim_psi: float) -> float:
+        """Well beyond the edge, because an end stop forgives; left alone once it is there."""
+        side = 1 if target_in > 0.5 * self.design.travel else -1
+        stop_in = self.design.travel if side > 0 else 0.0
+        if abs(inside.x - stop_in) < self.again_in and side * (aim_psi - self._edge_psi(inside, stop_in, side)) > 0.3:
+            return aim_psi
+        return self._edge_psi(inside, stop_in + side * self.design.rate_limit * self.design.tau_s, side)
 
     def _command_psi(self, inside: Inside, aim_psi: float) -> float:
         away_psi = aim_psi - inside.p

@@ -1,4 +1,4 @@
-"""Gain-scheduled two-degree-of-freedom PI: fast through the deadband, gentle in contact, with the deadband estimated."""
+"""Gain-scheduled two-degree-of-freedom PI: fast through the deadband, gentle in contact, deadband estimated."""
 
 from __future__ import annotations
 

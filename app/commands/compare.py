@@ -1,0 +1,128 @@
+"""Run controllers over the standard scenarios on the virtual valve and compare them."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from control.compare import Job, Result
+
+COLUMNS = (
+    ("steady_worst", "worst steady error", "%", 2),
+    ("steady_median", "median", "%", 2),
+    ("steady_spread", "over seeds", "%", 2),
+    ("peak_worst", "worst moment", "%", 2),
+    ("settling_s", "settling", "s", 1),
+    ("ratio", "x floor", "", 2),
+    ("unsettled", "unsettled", "share", 2),
+    ("overshoot", "overshoot", "%", 1),
+    ("limit_cycles", "cycling", "share", 2),
+    ("stem_in", "stem travel", "in", 1),
+    ("air_psi", "air", "psi", 0),
+)
+
+
+@click.command(name="compare")
+@click.option("--controllers", "-c", default="", help="Names with commas between.  [default: all]")
+@click.option("--scenarios", "-s", default="", help="Names with commas between.  [default: all]")
+@click.option("--seeds", type=click.IntRange(1), default=2, show_default=True, help="Repeats with other chance.")
+@click.option("--period", type=click.FloatRange(0.02, 0.5), default=0.1, show_default=True, help="Tick [s].")
+@click.option("--design", type=click.Path(path_type=Path, dir_okay=False), help="What the controllers know (TOML).")
+@click.option("--processes", type=click.IntRange(1), default=2, show_default=True)
+@click.option("--detail", default="steady", show_default=True, help="Score shown per scenario.")
+@click.option("--plot", type=click.Path(path_type=Path, dir_okay=False), help="Draw the table (PNG or SVG).")
+@click.option("--json", "as_json", is_flag=True, help="Every trial, for scripts.")
+def command(
+    controllers: str,
+    scenarios: str,
+    seeds: int,
+    period: float,
+    design: Path | None,
+    processes: int,
+    detail: str,
+    plot: Path | None,
+    as_json: bool,
+) -> None:
+    """Run controllers over the standard scenarios on the virtual valve and compare them.
+
+    Errors are in percent of travel on the true stem, in the last quarter of every hold; "x floor" is the median
+    settling time (to 0.5 %) over the time in which no controller can be faster.
+    """
+    from dataclasses import fields
+
+    from control.compare import as_json as everything
+    from control.compare import jobs
+    from control.controller import controller_class, controller_names
+    from control.design import DesignModel, load_design
+    from control.metrics import Score
+    from control.scenarios import chosen_scenarios
+    from hal.errors import BadInput
+
+    names = _words(controllers) or controller_names()
+    for name in names:
+        controller_class(name)
+    if detail not in {f.name for f in fields(Score)}:
+        raise BadInput(f"--detail {detail!r} is not a score; choose from {', '.join(f.name for f in fields(Score))}")
+    chosen = [s.name for s in chosen_scenarios(_words(scenarios))]
+    todo = jobs(names, chosen, seeds, period, load_design(design) if design else DesignModel())
+    results = _play(todo, processes)
+    if plot is not None:
+        from app.gallery.rivals import draw_comparison
+
+        draw_comparison(results, detail, plot)
+    if as_json:
+        click.echo(json.dumps(everything(results), indent=1))
+    else:
+        _print(results, detail)
+
+
+def _words(text: str) -> tuple[str, ...]:
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
+def _play(todo: Sequence[Job], processes: int) -> list[Result]:
+    from rich.console import Console
+    from rich.progress import Progress
+
+    from app.rivals import run_all
+
+    console = Console(stderr=True)
+    with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
+        task = bar.add_task(f"{len(todo)} trials", total=len(todo))
+        results = []
+        for result in run_all(todo, processes):
+            results.append(result)
+            bar.advance(task)
+    return results
+
+
+def _print(results: Sequence[Result], detail: str) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    from control.compare import by_scenario, summary
+
+    console = Console(width=None if Console().is_terminal else 160)
+    table = Table(title="over all scenarios and seeds")
+    table.add_column("controller")
+    for _, title, unit, _ in COLUMNS:
+        table.add_column(f"{title}\n[{unit}]" if unit else title, justify="right")
+    rows = summary(results)
+    for name in sorted(rows, key=lambda n: rows[n]["steady_worst"]):
+        table.add_row(name, *(f"{rows[name][key]:.{digits}f}" for key, _, _, digits in COLUMNS))
+    console.print(table)
+    details = by_scenario(results, detail)
+    wide = Table(title=f"{detail} by scenario, median over seeds (spread)")
+    wide.add_column("scenario")
+    for name in details:
+        wide.add_column(name.replace("_", "\n"), justify="right")
+    for scenario in next(iter(details.values())):
+        cells = (f"{row[scenario][0]:.2f}\n({row[scenario][1]:.2f})" for row in details.values())
+        wide.add_row(scenario, *cells)
+    console.print(wide)
