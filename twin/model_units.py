@@ -42,7 +42,7 @@ def _factor(unit: str, wanted: str, quantity: Quantity) -> float:
     if PERCENT in (given.unit, needed.unit) and given.unit != needed.unit:
         raise BadInput(
             f"the model's {quantity} is in {unit} and the recording's in {wanted}, and nothing says what 100 % is; "
-            f"give the range with --units, as in {quantity}=percent(0..1 {unit}), or identify a model from the recording"
+            f"give the range with --units, as in {quantity}=percent(0..1 {unit}), or identify a model from the record"
         )
     return given.scale / needed.scale
 

@@ -36,8 +36,8 @@ def step_for(design: DesignModel) -> float:
 
     The target is taken as linear within a step, which it is not while the converter settles: error ~ step^2 / lags.
     """
-    wanted = _LONGEST_S * np.sqrt(design.ep_tau_s / 0.30 * max(design.tau_s / 2.7, 0.1))
-    return float(np.clip(wanted, _SHORTEST_S, _LONGEST_S))
+    settling = _LONGEST_S * np.sqrt(design.ep_tau_s / 0.30 * max(design.tau_s / 2.7, 0.05))
+    return float(np.clip(min(settling, design.tau_s / 20.0), _SHORTEST_S, _LONGEST_S))
 
 
 def simulate_recording(

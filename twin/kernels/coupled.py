@@ -11,6 +11,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.slots import (
+    FOREVER,
     V_BREAKAWAY,
     V_IN_MOTION,
     V_RATE_CLOSE,
@@ -57,29 +58,51 @@ def _toward(x: float, w_a: float, w_b: float, lag: FloatArray) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _jumps(e: float, free: float, held: float) -> float:
+    """Where an element that sticks again at once stands: whole jumps away from `e`, the last one short of `free`.
+
+    A jump is the distance between the curves with and without the breakaway. Counting them, instead of landing on
+    `free`, makes the outcome of a fast change of pressure independent of the fine step.
+    """
+    jump = free - held
+    where: float = free if jump == 0.0 else e + np.floor((free - e) / jump + 1e-9) * jump
+    return where
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _play_step(
-    q: float, grown: float, extra: float, stops: FloatArray, tables: Tables, plays: Plays, elements: FloatArray
+    q: float,
+    grown: float,
+    extra: float,
+    at_once: bool,
+    stops: FloatArray,
+    tables: Tables,
+    plays: Plays,
+    elements: FloatArray,
 ) -> tuple[float, bool]:
     """Moves the elements to pressure `q`; those that `extra` holds stay. Returns their sum and whether any slipped."""
     p_first, p_step, closing, opening = tables
-    spreads, weights = plays
     w = 0.0
     slipped = False
-    for j in range(spreads.size):
+    for j in range(elements.size):
         e = elements[j]
-        band = spreads[j] + grown
+        band = plays[0][j] + grown
+        held_bottom = held_top = e
         if extra > 0.0:
-            bottom = _look_up(q - band - extra, p_first, p_step, closing)
-            top = _look_up(q + band + extra, p_first, p_step, opening)
-            if bottom <= e <= top:
-                w += weights[j] * e
+            held_bottom = _look_up(q - band - extra, p_first, p_step, closing)
+            held_top = _look_up(q + band + extra, p_first, p_step, opening)
+            if held_bottom <= e <= held_top:
+                w += plays[1][j] * e
                 continue
-        slipped = True
         bottom = _look_up(q - band, p_first, p_step, closing)
         top = _look_up(q + band, p_first, p_step, opening)
+        if at_once and extra > 0.0:
+            bottom = _jumps(e, bottom, held_bottom) if bottom > e else bottom
+            top = _jumps(e, top, held_top) if top < e else top
+        slipped = True
         e = max(stops[0], min(stops[1], max(bottom, min(top, e))))
         elements[j] = e
-        w += weights[j] * e
+        w += plays[1][j] * e
     return w, slipped
 
 
@@ -107,11 +130,12 @@ def coupled_pass(
 ) -> None:
     """Fills `out` (fine) with the stem. `stops`: (low, high) of the play output, then of the stem; `start`: (x, w)."""
     elements = np.full(plays[0].size, start[1])
-    w, _ = _play_step(force[0], widening[0], 0.0, stops, tables, plays, elements)
+    w, _ = _play_step(force[0], widening[0], 0.0, False, stops, tables, plays, elements)
     x = max(stops[2], min(stops[3], start[0]))
     out[0] = x
     after, stuck, travelled, speed, last_h = w, True, 0.0, 0.0, -1.0
     lags = np.zeros((3, 2))
+    at_once = c[V_STICK_SPEED] >= FOREVER
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
@@ -122,7 +146,7 @@ def coupled_pass(
             if c[V_IN_MOTION] != 0.0:
                 elements += c[V_IN_MOTION] * (x - w)
             extra = c[V_BREAKAWAY] if stuck else 0.0
-            new_w, slipped = _play_step(force[f], grown, extra, stops, tables, plays, elements)
+            new_w, slipped = _play_step(force[f], grown, extra, at_once, stops, tables, plays, elements)
             new_after = _toward(after, w, new_w, lags[2])
             new = _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1])
             new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))

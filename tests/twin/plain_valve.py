@@ -1,0 +1,113 @@
+"""The chain in plain Python, small Euler steps and nothing else: what the compiled passes are held against.
+
+Written from the equations of the interfaces page and of the effects' own `equations`, not from the kernels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from math import exp, inf
+
+import numpy as np
+import numpy.typing as npt
+
+FloatArray = npt.NDArray[np.float64]
+Shape = Callable[[float], float]
+
+
+def _nothing(_: float) -> float:
+    return 0.0
+
+
+@dataclass(frozen=True)
+class PlainValve:
+    """Switches for single effects; the defaults are the thesis's valve."""
+
+    ep_tau: float = 0.30
+    rise: float = 1.0
+    fall: float = 1.0
+    gain: float = 1.0
+    zero: float = 0.0
+    delay: float = 0.0
+    hold_band: float = 0.0
+    pressure_rate: float = inf
+    supply: float = inf
+    a1: float = 8.78
+    a2: float = 5.82
+    k1: float = 0.19
+    k2: float = 0.19
+    bend: Shape = _nothing  # extra pressure on both curves at position w
+    widen: Shape = _nothing  # extra half deadband at position w
+    grow: Shape = _nothing  # extra half deadband at time t
+    tau_close: float = 2.7
+    tau_open: float = 2.7
+    rate: float = 0.12
+    low: float = 0.0
+    high: float = 0.5625
+    in_motion: bool = False
+    breakaway: float = 0.0
+    second_lag: float = 0.0
+    creep: float = 0.0
+    creep_tau: float = 30.0
+    sensor_lag: float = 0.0
+    sensor_play: float = 0.0
+    reading: Callable[[float, float], float] = lambda x, _t: x
+
+    def run(
+        self, time_s: FloatArray, command: FloatArray, x0: float, step_s: float = 0.002
+    ) -> tuple[FloatArray, FloatArray]:
+        """Pressure and reading at the rows; `time_s` must be multiples of `step_s`."""
+        rows = np.rint((time_s - time_s[0]) / step_s).astype(int)
+        late = round(self.delay / step_s)
+        fine = np.repeat(command[1:], np.diff(rows))
+        fine = np.concatenate([np.full(late, command[0]), fine])[: rows[-1]]
+        p = held = command[0]
+        w = v = replace(self, breakaway=0.0)._play(p, x0, 0.0)  # the play output that pressure allows
+        x = slow = core = x0
+        lagged = self.reading(x, 0.0)
+        out_p, out_y = [p], [self.reading(x, 0.0)]
+        wanted = set(rows.tolist())
+        for i, u in enumerate(fine.tolist(), start=1):
+            t = i * step_s
+            held = u if abs(u - held) > self.hold_band else held
+            p = self._pressure(p, min(self.zero + self.gain * held, self.supply), step_s)
+            w = self._play(p, x if self.in_motion else w, t)
+            v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
+            tau = self.tau_close if v > x else self.tau_open
+            x += min(max((v - x) / tau, -self.rate), self.rate) * step_s
+            x = min(max(x, self.low), self.high)
+            slow += (x - slow) * step_s / self.creep_tau
+            stem = (1.0 - self.creep) * x + self.creep * slow
+            core = max(stem - self.sensor_play / 2, min(stem + self.sensor_play / 2, core))
+            y = self.reading(core, t)
+            lagged = y if self.sensor_lag == 0.0 else lagged + (y - lagged) * step_s / self.sensor_lag
+            if i in wanted:
+                out_p.append(p)
+                out_y.append(lagged)
+        return np.array(out_p), np.array(out_y)
+
+    def _pressure(self, p: float, goal: float, step_s: float) -> float:
+        tau = self.ep_tau * (self.rise if goal > p else self.fall)
+        new = goal + (p - goal) * exp(-step_s / tau)
+        reach = self.pressure_rate * step_s
+        return max(p - reach, min(p + reach, new))
+
+    def _play(self, p: float, w: float, t: float) -> float:
+        """The next play output: on the closing curve at least, on the opening curve at most, else where it was."""
+        wide = self.grow(t)
+        need_close = self.a1 + w / self.k1 + self.bend(w) + self.widen(w) + wide  # pressure that would move it up
+        need_open = self.a2 + w / self.k2 + self.bend(w) - self.widen(w) - wide
+        if p > need_close + self.breakaway:
+            w = self._solve(p - wide, self.a1, self.k1, +1.0)
+        elif p < need_open - self.breakaway:
+            w = self._solve(p + wide, self.a2, self.k2, -1.0)
+        return min(max(w, self.low), self.high)
+
+    def _solve(self, p: float, a: float, k: float, sign: float) -> float:
+        """Position at which the curve needs pressure `p`."""
+        w = k * (p - a)
+        for _ in range(12 if self.bend is not _nothing or self.widen is not _nothing else 0):
+            at = min(max(w, 0.0), 0.5625)
+            w = k * (p - a - self.bend(at) - sign * self.widen(at))
+        return w
