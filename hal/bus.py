@@ -123,7 +123,8 @@ class RtuBus:
 
     def _harmless_read(self, trust: Trust, count: int) -> Request:
         device = trust.device
-        return read_registers(device.id, device.read_fc, device.resync.address, count)
+        address = max(0, device.resync.address - device.address_base)
+        return read_registers(device.id, device.read_fc, address, count)
 
     def _probe(self, trust: Trust) -> Request:
         resync = trust.device.resync

@@ -107,8 +107,10 @@ class ModbusBench:
             self._close()
 
     def _start(self) -> None:
-        for device in self.profile.devices.values():
-            self._identity |= check_identity(self.bus, device, self._port)
+        for name, device in self.profile.devices.items():
+            prefix = f"{name}." if len(self.profile.devices) > 1 else ""
+            said = check_identity(self.bus, device, self._port)
+            self._identity |= {prefix + key: text for key, text in said.items()}
         # Proves that every signal can be read, before the first command.
         self.held_command = self._observe(strict=True, freshness=Freshness()).readback_psi
         if self._read_only:
@@ -163,19 +165,18 @@ class ModbusBench:
             return assemble(None, began_s, replies, freshness)
 
     def make_safe(self, reason: str) -> bool:
-        """Sends the safe command, up to three times; True when the device confirmed it.
+        """Vents; with the safe direction `hold` the valve is left where it is. Never raises."""
+        return self._open if self.profile.safe_direction == "hold" else self.vent()
 
-        With the safe direction `hold` the valve is left where it is. Never raises.
-        """
-        if self.profile.safe_direction == "hold":
-            return self._open
+    def vent(self) -> bool:
+        """Sends the safe command, up to three times; True when the device confirmed it. Never raises."""
         return any(self._open and self._quietly(self._send_safe) for _ in range(_SAFE_TRIES))
 
     def emergency_stop(self) -> bool:
         """Makes the device itself put out its safe value and ignore us, where it can; else the safe command."""
         with self._lock:
             taken_over = self._quietly(self._watchdog.emergency)
-            return self.make_safe("emergency stop") or taken_over
+            return self.vent() or taken_over
 
     def _send_safe(self) -> bool:
         words = self._plan.command.to_words(self.profile.safe_command, self._plan.device.word_order)

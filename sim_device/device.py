@@ -43,6 +43,7 @@ def build_units(profile: Profile, rig: Rig, clock: Clock, options: Options) -> d
         drives = profile.device_name(profile.signals.command) == name
         cells = signal_cells(profile, rig, name) + watchdog_cells(profile, rig if drives else None, name)
         cells += _identity_cells(device)
+        cells += _neighbour_cells(device, cells)
         if options.simulation_block and drives:
             cells.append(_virtual_time_cell(clock))
         try:
@@ -86,6 +87,20 @@ def _identity_cells(device: Device) -> list[Cell]:
     return [
         Cell(f"identity.{index}", first + index, lambda word=word: float(word), tables=BOTH)  # type: ignore[misc]
         for index, word in enumerate(identity.expect)
+    ]
+
+
+def _neighbour_cells(device: Device, cells: list[Cell]) -> list[Cell]:
+    """The other channels of a module, all 0: a master may read across them to find out whether the line is clean."""
+    if device.resync.method != "read":
+        return []
+    taken = {(table, cell.address + i) for cell in cells for table in cell.tables for i in range(cell.size)}
+    first = max(0, device.resync.address - device.address_base)
+    return [
+        Cell(f"neighbour.{at}", at, lambda: 0.0, tables=frozenset({table}))
+        for at in range(first, first + device.resync.count)
+        for table in BOTH
+        if (table, at) not in taken
     ]
 
 

@@ -53,13 +53,21 @@ def signal_cells(profile: Profile, rig: Rig, device: str) -> list[Cell]:
     sources = _sources(profile, rig)
     cells = []
     for name, register in profile.signals.named().items():
-        if profile.device_name(register) != device:
+        if profile.device_name(register) != device or _is_the_command_itself(profile, name, register):
             continue
         if name == "command":
             cells.append(_command_cell(profile, rig, register))
         else:
             cells.append(make_cell(profile, name, register, sources.get(name) or _no_value(register)))
     return cells
+
+
+def _is_the_command_itself(profile: Profile, name: str, register: Register) -> bool:
+    """Many modules are read back at the register that is written: one cell serves both."""
+    command = profile.signals.command
+    same_place = profile.wire_address(register) == profile.wire_address(command)
+    same_device = profile.device_name(register) == profile.device_name(command)
+    return name == "readback" and same_device and same_place and profile.table_of(register) == "holding"
 
 
 def _command_cell(profile: Profile, rig: Rig, register: Register) -> Cell:
