@@ -14,6 +14,8 @@ from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted, Plant
+from twin.simulate import start_of
+from twin.timegrid import make_grid
 
 #: Travel over compliance, and travel, of the thesis's valve: the units in which effects state their sizes.
 _REFERENCE_SPAN_PSI = 0.5625 / 0.19
@@ -44,9 +46,14 @@ def make_case(
     design: DesignModel,
     inserted: Sequence[Inserted] = (),
     bad_rows: Sequence[npt.NDArray[np.bool_] | None] | None = None,
+    noise: NoiseModel | None = None,
+    step: float = 0.0,
 ) -> Case:
-    """Prepares recordings against a design; `inserted` are effects that the design already has."""
-    noise = estimate_noise(recordings)
+    """Prepares recordings against a design; `inserted` are effects that the design already has.
+
+    `step` is the resolution of the position reading: still readings on one step show no noise, and have some.
+    """
+    noise = noise or estimate_noise(recordings)
     span = design.travel / design.compliance
     scales = Scales(
         pressure=span / _REFERENCE_SPAN_PSI,
@@ -55,10 +62,17 @@ def make_case(
         position_unit=design.position_unit,
     )
     bad = bad_rows or [None] * len(recordings)
-    trials = tuple(make_trial(r, fine_step_s(design, r), b) for r, b in zip(recordings, bad, strict=True))
+    base = Plant(design, tuple(inserted))
+    trials = tuple(_trial(base, r, b) for r, b in zip(recordings, bad, strict=True))
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
-    sigma_y = max(noise.position.sigma, _LEAST_NOISE * design.travel)
-    return Case(tuple(recordings), Plant(design, tuple(inserted)), scales, noise, sigma_y, sigma_p, trials)
+    sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
+    return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)
+
+
+def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None) -> Trial:
+    step_s = fine_step_s(base.design, recording)
+    start = start_of(base, recording, make_grid(recording.time_s, step_s))
+    return make_trial(recording, step_s, bad, start.play if start.play != start.position else None)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:

@@ -30,7 +30,7 @@ class DecisionRules:
     quiet: float = 1.5
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Decision:
     """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before."""
 

@@ -35,7 +35,7 @@ class SearchRules:
     enough: float = 1.03  # a mean squared residual (noise = 1) that leaves nothing to explain
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Findings:
     """All hypotheses fitted on a channel. `phi`: samples worth one independent sample."""
 

@@ -12,7 +12,7 @@ _PERIOD = Parameter(
     kind="time",
     lower=0.0,
     upper=60.0,
-    starts=(0.3, 1.0, 3.0),
+    starts=(0.1, 4.0),  # tried densely in between
     scale=1.0,
     doc="time between two refreshes",
     smooth=False,
@@ -22,7 +22,7 @@ _PHASE = Parameter(
     kind="fraction",
     lower=0.0,
     upper=1.0,
-    starts=(0.0, 0.5),
+    starts=(0.0, 0.25, 0.5, 0.75),
     scale=0.3,
     doc="time of the first refresh after the first row, fraction of the period",
     smooth=False,
@@ -42,6 +42,5 @@ EFFECT = Effect(
     equations="y(t) = x(n period + phase) until the next refresh",
     source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997), ch. 7 (sample and hold)",
     forms=(Form("periodic", (_PERIOD, _PHASE), _apply),),
-    evidence="events",
     twins=("sensor_lag",),
 )

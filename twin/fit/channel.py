@@ -45,7 +45,8 @@ def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
 def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s)
     start = stem_at(c, trial.start_position)
-    stem = stem_response(c, trial.grid, pressure, start, start)
+    play = start if trial.start_play is None else trial.start_play
+    stem = stem_response(c, trial.grid, pressure, start, play)
     return reading_response(c, trial.grid, stem)
 
 

@@ -14,7 +14,7 @@ from twin.fit.space import Space, form_starts
 from twin.plant import Plant
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Fit:
     """A fitted hypothesis. `mse` is the mean squared residual in units of the noise variance; `prior` its penalty."""
 

@@ -59,6 +59,7 @@ class Space:
     causes: tuple[Cause, ...]
     numbers: tuple[str, ...]
     unknowns: tuple[Unknown, ...]
+    scales: Scales
 
     def plant(self, z: FloatArray) -> Plant:
         """The plant at `z`: design numbers first, then the effects' parameters in the order of the causes."""
@@ -100,7 +101,7 @@ def make_space(
     for cause in causes:
         if cause.form is not None:
             unknowns += _form_unknowns(cause.name, cause.form, scales)
-    return Space(base, tuple(causes), tuple(kept), tuple(unknowns))
+    return Space(base, tuple(causes), tuple(kept), tuple(unknowns), scales)
 
 
 def _number(design: DesignModel, name: str, spread: float) -> Unknown:

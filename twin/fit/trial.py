@@ -19,6 +19,7 @@ SETTLE_S = 3.0
 class Trial:
     """One recording with its fine grid. `use_p`, `use_y` (bool, shape (n,)) mark the rows that count.
 
+    `start_play` is the play output at the start where the valve was moving, None where it stood with the stem.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     """
 
@@ -26,6 +27,7 @@ class Trial:
     grid: TimeGrid
     start_pressure: float
     start_position: float
+    start_play: float | None
     use_p: npt.NDArray[np.bool_]
     use_y: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
@@ -35,7 +37,12 @@ class Trial:
         return replace(self, pressure=pressure)
 
 
-def make_trial(recording: Recording, step_s: float, bad_rows: npt.NDArray[np.bool_] | None = None) -> Trial:
+def make_trial(
+    recording: Recording,
+    step_s: float,
+    bad_rows: npt.NDArray[np.bool_] | None = None,
+    start_play: float | None = None,
+) -> Trial:
     """Prepares a recording; `bad_rows` are false readings of the position that no fit may see."""
     grid = make_grid(recording.time_s, step_s)
     use_y = np.isfinite(recording.position)
@@ -49,7 +56,7 @@ def make_trial(recording: Recording, step_s: float, bad_rows: npt.NDArray[np.boo
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = recording.pressure[np.flatnonzero(np.isfinite(recording.pressure))[0]]
-    return Trial(recording, grid, float(pressure), position, use_p, use_y & ~early)
+    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early)
 
 
 def _at_start(position: FloatArray, use: npt.NDArray[np.bool_]) -> float:

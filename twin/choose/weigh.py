@@ -1,0 +1,74 @@
+"""Probabilities and confusion sets out of scored hypotheses.
+
+Scores are log-evidences of imperfect models, so their differences overstate what is known; a temperature, measured on
+recordings of plants that none of the candidates describes exactly, brings them back to honest odds
+(docs/calibration.md). Source: Guo et al., "On Calibration of Modern Neural Networks", ICML 2017 (temperature scaling).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from twin.choose.decide import Decision
+from twin.choose.score import score
+from twin.fit.fitting import Fit
+
+
+@dataclass(frozen=True, slots=True)
+class Weights:
+    """Chosen on the calibration bank. `temperature` divides score differences; `confusable` is the least odds of a twin
+    against the accepted cause; `ceiling` is the highest probability ever claimed."""
+
+    temperature: float = 10.0
+    confusable: float = 0.03
+    ceiling: float = 0.99
+
+
+@dataclass(frozen=True, slots=True)
+class Weighed:
+    """`probability` of every cause that was tried; `sets` of causes that this channel cannot tell apart."""
+
+    probability: dict[str, float]
+    sets: tuple[tuple[str, ...], ...]
+
+
+def weigh(decision: Decision, weights: Weights) -> Weighed:
+    """Weighs all hypotheses of a channel around the accepted one."""
+    rows, phi = decision.findings.channel.rows, decision.findings.phi
+    fits = _comparable(decision)
+    scores = np.array([score(f, rows, phi) for f in fits])
+    scores = np.minimum(scores, score(decision.accepted, rows, phi))
+    odds = np.exp((scores - scores.max()) / weights.temperature)
+    odds /= odds.sum()
+    names = sorted({name for f in fits for name in f.names})
+    raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
+    probability = {n: min(p, weights.ceiling) for n, p in raw.items()}
+    return Weighed(probability, _sets(decision, fits, odds, weights))
+
+
+def _comparable(decision: Decision) -> list[Fit]:
+    """Hypotheses no larger than the accepted one: what a further cause would have gained has been weighed already."""
+    size = len(decision.accepted.space.causes)
+    everything = (decision.findings.none, *decision.findings.fits)
+    return [f for f in everything if len(f.space.causes) <= size or f is decision.accepted]
+
+
+def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: Weights) -> tuple[tuple[str, ...], ...]:
+    """For each accepted cause the causes that could stand in its place."""
+    accepted = decision.accepted
+    own = next(float(o) for o, f in zip(odds, fits, strict=True) if f is accepted)
+    found = []
+    for name in decision.names:
+        others = set(accepted.names) - {name}
+        rivals = [
+            (float(o), (set(f.names) - others).pop())
+            for o, f in zip(odds, fits, strict=True)
+            if f is not accepted and len(f.names) == len(accepted.names) and others < set(f.names)
+        ]
+        near = [rival for o, rival in sorted(rivals, reverse=True) if o > weights.confusable * own]
+        if near:
+            found.append((name, *near))
+    return tuple(found)

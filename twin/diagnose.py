@@ -1,0 +1,178 @@
+"""A diagnosis from recordings to verdict: data quality, noise, stages, causes, held-out gap, where-map, what next."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import DataNote, FloatArray, Recording
+from twin.case import Case, make_case
+from twin.catalog import effects
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
+from twin.closure import gap
+from twin.detectable import detection_limits
+from twin.diagnosis import Diagnosis, Where
+from twin.fit.channel import chain_channel, predict_reading
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import ACCUSED_SPREAD, make_space
+from twin.gap import GapParts, heldout_parts
+from twin.noise.model import estimate_noise
+from twin.plant import Inserted, Plant, effect_tables
+from twin.sensing import Sensing, sense
+from twin.stages import StageResult, judge
+from twin.statement import statement
+from twin.timing import settled_timing
+from twin.verdict import Judgement, pronounce
+from twin.where.isolability import describe
+from twin.whereabouts import whereabouts
+
+Progress = Callable[[str, float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Everything that can be chosen about a diagnosis; the defaults are the calibrated ones."""
+
+    search: SearchRules = field(default_factory=SearchRules)
+    rules: DecisionRules = field(default_factory=DecisionRules)
+    weights: Weights = field(default_factory=Weights)
+    seed: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """A diagnosis with what a report needs: predictions per recording (reading units) and the updated model."""
+
+    diagnosis: Diagnosis
+    recordings: tuple[Recording, ...]
+    model: DesignModel
+    effect_units: Mapping[str, Mapping[str, str]]
+    before: tuple[FloatArray, ...]
+    retuned: tuple[FloatArray, ...]
+    after: tuple[FloatArray, ...]
+    gap: GapParts
+    result: StageResult
+    next_file: str | None = None
+
+
+def diagnose(
+    recordings: Sequence[Recording],
+    design: DesignModel,
+    inserted: Sequence[Inserted] = (),
+    settings: Settings | None = None,
+    progress: Progress = lambda _what, _share: None,
+) -> Outcome:
+    """Diagnoses recordings of one bench against a design in the same units.
+
+    Raises: `BadInput` when the recordings cannot carry a diagnosis (too short, no motion).
+    """
+    settings = settings or Settings()
+    noise = estimate_noise(recordings)
+    recordings, timing_notes = settled_timing(recordings, Plant(design, tuple(inserted)), noise)
+    progress("noise and events", 1.0)
+    sensing = sense(recordings, noise, design.travel)
+    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
+    result = judge(case, settings.search, settings.rules, progress)
+    retuned = _retuned(case)
+    where = whereabouts(case, result, settings.seed)
+    ep_share = where.stage["ep"].value if where.stage else 0.0
+    judgement = pronounce(result, sensing, ep_share, settings.weights)
+    final = _final_plant(case, result, judgement, retuned)
+    progress("held-out gap", 0.0)
+    parts = heldout_parts(case, result, judgement, retuned, progress)
+    diagnosis = _assembled(case, result, judgement, where, parts, settings, timing_notes, sensing)
+    plants = (case.base, retuned.plant, final)
+    before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
+    model, units = _model(final, case)
+    return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, result)
+
+
+def _retuned(case: Case) -> Fit:
+    """Only the design's own numbers, fitted to the whole chain."""
+    channel = chain_channel(case.trials, case.sigma_y)
+    space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
+    return fit(channel, space, starts_of(space), rounds=20)
+
+
+def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit) -> Plant:
+    """The updated model: the design for no gap, re-tuned when unexplained, with the causes otherwise."""
+    if judgement.verdict == "no_gap":
+        return case.base
+    return retuned.plant if judgement.verdict == "unexplained" else result.plant()
+
+
+def _assembled(
+    case: Case,
+    result: StageResult,
+    judgement: Judgement,
+    where: Where,
+    parts: GapParts,
+    settings: Settings,
+    notes: Sequence[DataNote],
+    sensing: Sensing,
+) -> Diagnosis:
+    floor = case.sigma_y
+    if "sensor_quantization" in sensing.accepted:
+        floor = float(np.sqrt(max(floor**2 - sensing.step**2 / 12.0, 1e-12 * case.travel**2)))
+    memory = case.noise.position.correlation_samples
+    numbers = gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, settings.seed)
+    causes = tuple(replace(c, heldout_gap_without=parts.without.get(c.name)) for c in judgement.causes)
+    ranking = tuple(replace(r, heldout_gap=parts.alone.get(r.name)) for r in judgement.ranking)
+    limits = detection_limits(
+        [d.findings.channel for d in result.decisions],
+        case.base,
+        case.scales,
+        tuple(effects().values()),
+        settings.rules,
+    )
+    quality = tuple(n for r in case.recordings for n in r.notes) + tuple(notes)
+    diagnosis = Diagnosis(
+        verdict=judgement.verdict,
+        statement="",
+        causes=causes,
+        ranking=ranking,
+        gap=numbers,
+        where=where,
+        confusable=judgement.confusable,
+        data_quality=quality,
+        effects_tested=limits,
+        structure=tuple(describe(frozenset({"pressure"} if case.sigma_p is not None else set()))),
+        noise=_noise(case),
+        version=_version(),
+    )
+    return replace(diagnosis, statement=statement(diagnosis))
+
+
+def _noise(case: Case) -> dict[str, object]:
+    """The noise as measured, with where it was measured."""
+    signals = {"position": case.noise.position, "pressure": case.noise.pressure}
+    units = {"position": case.scales.position_unit, "pressure": case.scales.pressure_unit}
+    return {
+        name: {
+            "sigma": one.sigma,
+            "unit": units[name],
+            "source": one.source,
+            "correlation_samples": one.correlation_samples,
+        }
+        for name, one in signals.items()
+        if one is not None
+    }
+
+
+def _model(plant: Plant, case: Case) -> tuple[DesignModel, dict[str, dict[str, str]]]:
+    """The plant as a design model file's content, with the units of the effects' parameters."""
+    units = {one.effect: {p.name: case.scales.unit(p.kind) for p in one.form.parameters} for one in plant.inserted}
+    return replace(plant.design, effects=effect_tables(plant.inserted)), units
+
+
+def _version() -> str:
+    try:
+        return version("lostmotion")
+    except PackageNotFoundError:
+        return "unknown"

@@ -1,0 +1,86 @@
+"""The held-out gap of everything the diagnosis quotes: before, re-tuned, after, and without each cause."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from logs.recording import FloatArray
+from twin.case import Case
+from twin.choose.decide import Decision
+from twin.closure import rms
+from twin.fit.channel import chain_channel
+from twin.fit.fitting import Fit
+from twin.heldout import predict_heldout
+from twin.stages import StageResult
+from twin.verdict import Judgement
+
+Progress = Callable[[str, float], None]
+
+#: Candidates of the ranking whose own held-out gap is worth computing.
+_RANKED = 6
+
+
+@dataclass(frozen=True, slots=True)
+class GapParts:
+    """Held-out errors, shape (n,), NaN where a row does not count; RMS in % of travel per cause and candidate.
+
+    `without[name]`: the named causes less this one. `alone[name]`: this candidate as the only cause of its channel.
+    """
+
+    before: FloatArray
+    retuned: FloatArray
+    after: FloatArray
+    without: dict[str, float]
+    alone: dict[str, float]
+
+
+def heldout_parts(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, progress: Progress) -> GapParts:
+    """Refits everything on the rows that are not held out and predicts those that are."""
+    chain = chain_channel(case.trials, case.sigma_y)
+    before = predict_heldout(case, case.base, [], [])
+    again = predict_heldout(case, case.base, [retuned], [chain])
+    named = [d for d in result.decisions if d.explained]
+    if judgement.verdict == "no_gap":
+        after = before
+    elif judgement.verdict == "unexplained" or not named:
+        after = again
+    else:
+        after = _predicted(case, {d: d.accepted for d in named})
+    progress("held-out gap", 0.5)
+    percent = 100.0 / case.travel
+    without = {name: percent * rms(_left_out(case, named, name)) for d in named for name in d.names}
+    alone = _alone(case, result, named, percent)
+    progress("held-out gap", 1.0)
+    return GapParts(before, again, after, without, alone)
+
+
+def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
+    channels = [d.findings.channel for d in fits]
+    return predict_heldout(case, case.base, list(fits.values()), channels)
+
+
+def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
+    """Errors with all named causes but one."""
+    fits = {}
+    for decision in named:
+        kept = set(decision.names) - {name}
+        smaller = [f for f in (decision.findings.none, *decision.findings.fits) if set(f.names) == kept]
+        if name not in decision.names:
+            fits[decision] = decision.accepted
+        elif smaller and kept:
+            fits[decision] = min(smaller, key=lambda f: f.mse)
+        elif not kept:
+            fits[decision] = decision.findings.none
+    return _predicted(case, fits)
+
+
+def _alone(case: Case, result: StageResult, named: list[Decision], percent: float) -> dict[str, float]:
+    """The best single candidates of each channel, each with what the other channels accepted."""
+    gaps: dict[str, float] = {}
+    for decision in result.decisions:
+        singles = sorted((f for f in decision.findings.fits if len(f.names) == 1), key=lambda f: f.mse)
+        for single in singles[:_RANKED]:
+            fits = {d: d.accepted for d in named if d is not decision} | {decision: single}
+            gaps[single.names[0]] = percent * rms(_predicted(case, fits))
+    return gaps

@@ -1,0 +1,62 @@
+"""What the look of the readings says before any model is tried, and what of it enters the models.
+
+False readings are kept from every fit; a coarse resolution is part of the noise. A slow refresh is a candidate like any
+other effect (its trajectory is simulated), so that it competes with lags.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from logs.recording import Recording
+from twin.diagnosis import Estimate
+from twin.events.evidence import Evidence
+from twin.events.scan import Events, scan_events
+from twin.noise.model import NoiseModel
+
+#: A reading that is false less often than this is ordinary noise with a tail.
+_LEAST_RATE = 2e-4
+#: A step is an effect when it is coarser than the noise and than this share of travel.
+_LEAST_STEP = 1e-3
+
+
+@dataclass(frozen=True, slots=True)
+class Sensing:
+    """Events of all recordings. `accepted`: estimates of every accepted event effect; `step`: the resolution."""
+
+    events: tuple[Events, ...]
+    accepted: dict[str, dict[str, Estimate]]
+    step: float
+
+    @property
+    def bad_rows(self) -> list[np.ndarray]:
+        """False position readings per recording."""
+        return [e.false_position for e in self.events]
+
+
+def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float) -> Sensing:
+    """Scans all recordings and accepts what all of them together leave no doubt about."""
+    events = tuple(scan_events(r, noise) for r in recordings)
+    accepted: dict[str, dict[str, Estimate]] = {}
+    rows = sum(r.n for r in recordings)
+    false = sum(int(e.false_position.sum()) for e in events)
+    drop = _strongest(events, "sensor_dropouts")
+    if drop.found and false >= 3 and false / rows > _LEAST_RATE:
+        accepted["sensor_dropouts"] = dict(drop.estimates)
+    quantization = _strongest(events, "sensor_quantization")
+    step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
+    if quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step)):
+        accepted["sensor_quantization"] = dict(quantization.estimates)
+    return Sensing(events, accepted, step)
+
+
+def _strongest(events: Sequence[Events], name: str) -> Evidence:
+    return max((e.evidence[name] for e in events), key=lambda one: one.log_likelihood_ratio)
+
+
+def _noise_without(noise: NoiseModel, step: float) -> float:
+    """Noise of the position without the part that the reading's step makes."""
+    return float(np.sqrt(max(noise.position.sigma**2 - step**2 / 12.0, 0.0)))

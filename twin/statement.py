@@ -1,0 +1,34 @@
+"""The sentence that an operator reads first."""
+
+from __future__ import annotations
+
+from twin.diagnosis import Cause, Diagnosis
+
+
+def statement(diagnosis: Diagnosis) -> str:
+    """The verdict in plain words, with the numbers that carry it."""
+    g = diagnosis.gap
+    if diagnosis.verdict == "no_gap":
+        return (
+            f"No gap: the design predicts this record to {g.before:.2g} % of travel, "
+            f"and the readings' own noise is {g.noise_floor:.2g} %."
+        )
+    if diagnosis.verdict == "unexplained":
+        return (
+            f"Unexplained: the design is off by {g.before:.2g} % of travel ({g.retuned:.2g} % re-tuned, noise "
+            f"{g.noise_floor:.2g} %), and none of the known effects accounts for it."
+        )
+    names = " and ".join(_named(cause) for cause in diagnosis.causes)
+    closed = g.reducible_closed
+    share = f", which closes {100.0 * closed.value:.0f} % of what noise does not account for" if closed else ""
+    what = "A design number is off" if diagnosis.verdict == "parameter" else "The design leaves something out"
+    return (
+        f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
+        f"(noise {g.noise_floor:.2g} %){share}."
+    )
+
+
+def _named(cause: Cause) -> str:
+    sizes = ", ".join(f"{name} {e.value:.3g} {e.unit}".rstrip() for name, e in cause.parameters.items())
+    plain = cause.name.removeprefix("parameter:")
+    return f"{plain} ({sizes}; probability {cause.probability:.2f})" if sizes else plain

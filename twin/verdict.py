@@ -1,0 +1,106 @@
+"""The verdict: what the channels' decisions and the readings' events say together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from twin.choose.weigh import Weighed, Weights, weigh
+from twin.diagnosis import Cause, Estimate, Ranked, Verdict
+from twin.fit.fitting import Fit
+from twin.fit.numbers import unit
+from twin.fit.space import Cause as Candidate
+from twin.sensing import Sensing
+from twin.stages import StageResult
+
+#: A converter whose pressure is off in a way that none explains matters only if it moves the stem by this share.
+MATERIAL_SHARE = 0.25
+_EVENT_PROBABILITY = 0.97
+
+
+@dataclass(frozen=True, slots=True)
+class Judgement:
+    """The verdict with its causes (sorted by probability), the ranking of all candidates and the confusion sets."""
+
+    verdict: Verdict
+    causes: tuple[Cause, ...]
+    ranking: tuple[Ranked, ...]
+    confusable: tuple[tuple[str, ...], ...]
+
+
+def pronounce(result: StageResult, sensing: Sensing, ep_share: float, weights: Weights) -> Judgement:
+    """Combines everything. `ep_share` is the converter's share of the reducible position error, 0 if unknown."""
+    weighed = [weigh(d, weights) for d in result.decisions]
+    causes = _causes(result, weighed, sensing)
+    sets = tuple(s for w in weighed for s in w.sets)
+    ranking = _ranking(weighed, sensing)
+    if _unexplained(result, ep_share):
+        return Judgement("unexplained", (), ranking, ())
+    effects = [c for c in causes if not c.name.startswith("parameter:")]
+    if not causes:
+        return Judgement("no_gap", (), ranking, ())
+    verdict: Verdict = "parameter" if not effects else "effect" if len(effects) == 1 else "effects"
+    return Judgement(verdict, causes, ranking, sets)
+
+
+def _unexplained(result: StageResult, ep_share: float) -> bool:
+    """Whether a channel with a gap found no cause, and the gap matters for the stem."""
+    for decision in result.decisions:
+        if decision.gap and not decision.explained:
+            minor = decision.findings.channel.name == "pressure" and ep_share < MATERIAL_SHARE
+            if not minor:
+                return True
+    return False
+
+
+def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tuple[Cause, ...]:
+    causes = []
+    for decision, weight in zip(result.decisions, weighed, strict=True):
+        if not decision.explained:
+            continue
+        sizes = estimates(decision.accepted, decision.findings.phi)
+        for candidate in decision.accepted.space.causes:
+            own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
+            parameters = {label: estimate for (_, label), estimate in own.items()}
+            causes.append(Cause(candidate.name, candidate.stage, weight.probability[candidate.name], None, parameters))
+    for name, found in sensing.accepted.items():
+        if name not in {c.name for c in causes}:
+            causes.append(Cause(name, "sensor", _EVENT_PROBABILITY, None, found))
+    return tuple(sorted(causes, key=lambda c: -c.probability))
+
+
+def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
+    """Estimates of everything a hypothesis accuses, by (cause, parameter), with 95 % intervals.
+
+    The intervals allow for the correlation and the excess of the residual.
+    """
+    deviations = fit.deviations(scale=(phi * max(fit.mse, 1.0)) ** 0.5)
+    values = fit.values()
+    design = fit.space.base.design
+    found: dict[tuple[str, str], Estimate] = {}
+    for k, name in enumerate(fit.space.numbers):
+        if f"parameter:{name}" in fit.names:
+            label = (f"parameter:{name}", name)
+            found[label] = _estimate(values[k], deviations[k], unit(design, name))
+    at = len(fit.space.numbers)
+    for candidate in fit.space.causes:
+        for offset, (name, its_unit) in enumerate(_parameters(candidate, fit)):
+            found[(candidate.name, name)] = _estimate(values[at + offset], deviations[at + offset], its_unit)
+        at += len(candidate.form.parameters) if candidate.form else 0
+    return found
+
+
+def _parameters(candidate: Candidate, fit: Fit) -> list[tuple[str, str]]:
+    if candidate.form is None:
+        return []
+    return [(p.name, fit.space.scales.unit(p.kind)) for p in candidate.form.parameters]
+
+
+def _estimate(value: float, deviation: float, its_unit: str) -> Estimate:
+    return Estimate(float(value), (float(value - 1.96 * deviation), float(value + 1.96 * deviation)), its_unit)
+
+
+def _ranking(weighed: list[Weighed], sensing: Sensing) -> tuple[Ranked, ...]:
+    probability = {name: p for w in weighed for name, p in w.probability.items()}
+    probability |= dict.fromkeys(sensing.accepted, _EVENT_PROBABILITY)
+    order = sorted(probability.items(), key=lambda item: -item[1])
+    return tuple(Ranked(name, p, None) for name, p in order)

@@ -1,0 +1,59 @@
+"""Writes a diagnosis: diagnosis.json, model.toml, report.html, diagnosis.rrd, and the next experiment if any."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from control.design import save_design
+from logs.recording import FloatArray
+from twin.diagnose import Outcome
+from twin.diagnosis import write_diagnosis
+from twin.report.page import write_report
+from twin.report.series import Series
+from twin.rrd import write_rrd
+
+Progress = Callable[[str, float], None]
+
+
+def write_outcome(outcome: Outcome, folder: Path, progress: Progress) -> None:
+    """Writes all files of a diagnosis into `folder`, which exists; the verdict first, the pictures after it."""
+    write_diagnosis(outcome.diagnosis, folder / "diagnosis.json")
+    save_design(outcome.model, folder / "model.toml", outcome.diagnosis.statement, outcome.effect_units)
+    if outcome.next_file is not None:
+        (folder / "next.toml").write_text(outcome.next_file, encoding="utf-8")
+    series = series_of(outcome)
+    progress("report", 0.2)
+    write_report(outcome.diagnosis, series, folder / "report.html")
+    progress("report", 0.8)
+    write_rrd(outcome.diagnosis, series, folder / "diagnosis.rrd")
+    progress("report", 1.0)
+
+
+def series_of(outcome: Outcome) -> Series:
+    """The arrays that the report draws, all recordings in turn."""
+    records = outcome.recordings
+
+    def joined(parts: tuple[FloatArray, ...]) -> FloatArray:
+        return np.concatenate(parts)
+
+    pressures = [r.pressure if r.pressure is not None else np.full(r.n, np.nan) for r in records]
+    measured = any(r.pressure is not None for r in records)
+    return Series(
+        time_s=joined(tuple(r.time_s for r in records)),
+        command=joined(tuple(r.command for r in records)),
+        position=joined(tuple(r.position for r in records)),
+        before=joined(outcome.before),
+        retuned=joined(outcome.retuned),
+        after=joined(outcome.after),
+        heldout=np.isfinite(outcome.gap.after),
+        travel=outcome.model.travel,
+        pressure=np.concatenate(pressures) if measured else None,
+        false=np.concatenate([~t.use_y & np.isfinite(t.recording.position) for t in outcome.result.case.trials]),
+        record=np.concatenate([np.full(r.n, k, dtype=np.int64) for k, r in enumerate(records)]),
+        names=tuple(r.name for r in records),
+        pressure_unit=outcome.model.pressure_unit,
+        position_unit=outcome.model.position_unit,
+    )
