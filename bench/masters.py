@@ -58,6 +58,7 @@ class Ours(Master):
         device = Device(id=UNIT, fc23=True, turnaround_ms=0.0)
         self._bus = RtuBus(line, (device,), margin_s=timeout_s)
         self._bus.open()
+        self.transact = self._bus.transact
 
     @property
     def stats(self) -> dict[str, int]:
@@ -68,11 +69,11 @@ class Ours(Master):
 
         kind, address, count = question
         if kind == "FC16":
-            self._bus.transact(pdu.write_registers(UNIT, address, WORDS))
+            self.transact(pdu.write_registers(UNIT, address, WORDS))
             return ()
         if kind == "FC03":
-            return self._bus.transact(pdu.read_registers(UNIT, 3, address, count)).words
-        return self._bus.transact(pdu.write_and_read(UNIT, 0, WORDS, address, count)).words
+            return self.transact(pdu.read_registers(UNIT, 3, address, count)).words
+        return self.transact(pdu.write_and_read(UNIT, 0, WORDS, address, count)).words
 
     def close(self) -> None:
         self._bus.close()

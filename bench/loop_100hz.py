@@ -1,0 +1,114 @@
+"""100 ticks a second at 115200 baud with function 23, with record and live view on and off:
+`python bench/loop_100hz.py [--seconds S] [--rounds N]`.
+
+The device is a process of its own behind a line paced at 115200 baud. Rounds with and without record and view take
+turns. A tick overruns when the next deadline has passed before it is done.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
+
+PERIOD_S = 0.01
+
+
+class Columns:
+    """A sink that keeps what it needs in memory: what a run without record and view costs."""
+
+    def __init__(self) -> None:
+        self.lateness_s: list[float] = []
+        self.latency_s: list[float] = []
+
+    def append(self, row: Mapping[str, float]) -> None:
+        self.lateness_s.append(row["lateness_s"])
+        self.latency_s.append(row["latency_s"])
+
+    def event(self, time_s: float | None, level: str, text: str) -> None: ...
+
+    def note(self, time_s: float | None, text: str) -> None: ...
+
+    def state(self, time_s: float | None, text: str) -> None: ...
+
+
+@contextmanager
+def paced_device() -> Iterator[str]:
+    """The virtual device in a process of its own, on a line of 115200 baud; yields its port."""
+    command = [sys.executable, "-m", "app", "emulate", "--pace", "115200", "--json"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True)
+    assert process.stdout is not None
+    try:
+        yield json.loads(process.stdout.readline())["port"]
+    finally:
+        process.terminate()
+        process.wait(timeout=10.0)
+
+
+def one_round(port: str, seconds: float, folder: Path | None) -> tuple[Columns, int, int]:
+    """(times of every tick, overruns, missing ticks); with a `folder`, recorded there and streamed."""
+    from control.drive import OpenLoopDrive
+    from control.loop import Loop, Sink
+    from control.plan import Plan
+    from control.row import columns_of
+    from control.step import Step
+    from hal.clock import RealClock
+    from hal.modbus_bench import ModbusBench
+    from hal.profile import load_profile
+    from hal.safety import SafeBench
+    from logs.stream import RunView
+    from logs.writer import RunWriter
+
+    clock, seen = RealClock(), Columns()
+    profile = load_profile("virtual")
+    aux = {name: register.unit for name, register in profile.signals.aux.items()}
+    with ExitStack() as stack:
+        bench = stack.enter_context(SafeBench(ModbusBench(profile, port, clock), profile.limits, clock))
+        sinks: list[Sink] = [seen]
+        if folder is not None:
+            columns = columns_of(bench.info, closed_loop=False, aux_units=aux)
+            writer = stack.enter_context(RunWriter.create(folder, {"kind": "bench"}, columns))
+            view = stack.enter_context(RunView.open(writer.start, columns))
+            assert view.on, view.trouble
+            sinks += [writer, view]
+        plan = Plan(PERIOD_S, (Step(0.0, 0.0, 0.0, 0.5), Step(9.0, 14.0, seconds - 0.5, seconds - 0.5)))
+        outcome = Loop(bench, clock, sinks, aux=tuple(aux)).run(plan, OpenLoopDrive())
+    return seen, outcome.overruns, outcome.missing
+
+
+def p99(values: list[float]) -> float:
+    return sorted(values)[int(0.99 * (len(values) - 1))]
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=10.0, help="of each round")
+    parser.add_argument("--rounds", type=int, default=3)
+    asked = parser.parse_args()
+    lateness: dict[str, list[float]] = {"off": [], "on": []}
+    titles = ("record and view", "ticks", "overruns", "missing", "late p50 ms", "p99", "max", "wire p50 ms", "p99")
+    print("{:>15} {:>6} {:>9} {:>8} {:>12} {:>6} {:>6} {:>12} {:>6}".format(*titles))
+    with paced_device() as port, tempfile.TemporaryDirectory() as scratch:
+        for number in range(2 * asked.rounds):
+            mode = ("off", "on")[number % 2]
+            folder = Path(scratch) / f"run{number}" if mode == "on" else None
+            seen, overruns, missing = one_round(port, asked.seconds, folder)
+            late, latency = [1e3 * x for x in seen.lateness_s], [1e3 * x for x in seen.latency_s]
+            lateness[mode] += late
+            print(
+                f"{mode:>15} {len(late):6d} {overruns:9d} {missing:8d} {statistics.median(late):12.3f} "
+                f"{p99(late):6.2f} {max(late):6.2f} {statistics.median(latency):12.3f} {p99(latency):6.2f}",
+                flush=True,
+            )
+    off, on = p99(lateness["off"]), p99(lateness["on"])
+    print(f"p99 lateness: {off:.3f} ms off, {on:.3f} ms on, difference {on - off:+.3f} ms (allowed: +0.5 ms)")
+
+
+if __name__ == "__main__":
+    main()
