@@ -1,0 +1,156 @@
+"""The drawn figures of a report: over time, close up, in the pressure/position plane, and of the residual itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.report.series import Series, busiest_window, thin
+from twin.report.style import AFTER, BEFORE, FLOOR, HELDOUT, INK, MEASURED, MUTED, RETUNED, drawn, new_figure, tidy
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+_POINTS = 2400  # of a line across the page
+
+
+@drawn("Position over time: measured, design model and updated model, with residuals")
+def over_time(series: Series, floor_percent: float) -> Figure:
+    """The whole data: readings and predictions above, residuals with the band of the noise floor below."""
+    figure = new_figure(10.6, 4.5)
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
+    time = series.run_time_s
+    for axes in (top, bottom):
+        _shade_heldout(axes, series, time)
+    position = series.percent(series.position)
+    _line(top, time, position, MEASURED, "measured", 1.6, 0.55)
+    _line(top, time, series.percent(series.before), BEFORE, "design model", 1.0)
+    _line(top, time, series.percent(series.after), AFTER, "updated model", 1.0)
+    _residuals(bottom, series, time, floor_percent)
+    tidy(top, "", "position [% of travel]")
+    tidy(bottom, "run time [s]", "reading - model")
+    _legend(top)
+    top.margins(x=0.005)
+    return figure
+
+
+@drawn("Close-up of the stretch where the design model errs most")
+def close_up(series: Series, floor_percent: float, seconds: float = 90.0) -> Figure:
+    """The stretch where the design model errs most: command and pressure, position, residual."""
+    period = float(np.median(np.diff(series.run_time_s))) if series.time_s.size > 1 else 1.0
+    rows = busiest_window(series, max(50, round(seconds / period)))
+    time = series.run_time_s[rows]
+    figure = new_figure(10.6, 5.4)
+    drive, top, bottom = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 3, 1.7])
+    drive.step(time, series.command[rows], where="pre", color=MUTED, linewidth=1.1, label="command")
+    if series.pressure is not None:
+        _line(drive, time, series.pressure[rows], INK, "pressure", 0.9)
+    _line(top, time, series.percent(series.position)[rows], MEASURED, "measured", 2.2, 0.5)
+    _line(top, time, series.percent(series.before)[rows], BEFORE, "design model", 1.4)
+    if series.retuned is not None:
+        _line(top, time, series.percent(series.retuned)[rows], RETUNED, "re-tuned design", 1.1, dashed=True)
+    _line(top, time, series.percent(series.after)[rows], AFTER, "updated model", 1.4)
+    _residuals(bottom, series, time, floor_percent, rows)
+    tidy(drive, "", f"[{series.pressure_unit}]")
+    tidy(top, "", "position [% of travel]")
+    tidy(bottom, "run time [s]", "reading - model")
+    _legend(drive)
+    _legend(top)
+    top.margins(x=0.005)
+    return figure
+
+
+@drawn("Hysteresis planes, position over pressure: measured against design and updated model")
+def planes(series: Series) -> Figure:
+    """Position over pressure (over the command, where no pressure was measured): readings against each model."""
+    figure = new_figure(10.6, 4.2)
+    both = figure.subplots(1, 2, sharex=True, sharey=True)
+    driver = series.command if series.pressure is None else series.pressure
+    name = "command" if series.pressure is None else "pressure"
+    measured = np.where(series.starts, np.nan, series.percent(series.position))
+    for axes, model, colour, label in (
+        (both[0], series.before, BEFORE, "design model"),
+        (both[1], series.after, AFTER, "updated model"),
+    ):
+        _path(axes, driver, measured, MEASURED, "measured", 0.9, 0.45)
+        _path(axes, driver, np.where(series.starts, np.nan, series.percent(model)), colour, label, 0.9, 0.9)
+        tidy(axes, f"{name} [{series.pressure_unit}]", "position [% of travel]" if axes is both[0] else "")
+        _legend(axes)
+    return figure
+
+
+@drawn("Distribution and spectrum of the residuals before and after")
+def residual_shape(series: Series, floor_percent: float) -> Figure:
+    """Distribution and spectrum of the residuals before and after, on held-out rows, against the floor."""
+    figure = new_figure(10.6, 2.9)
+    left, right = figure.subplots(1, 2)
+    rows = series.heldout if series.heldout.any() else np.ones_like(series.heldout)
+    pairs = [(series.before, BEFORE, "design model"), (series.after, AFTER, "updated model")]
+    residuals = [(series.percent(series.position - model), colour, name) for model, colour, name in pairs]
+    known = np.concatenate([r[rows & np.isfinite(r)] for r, _, _ in residuals])
+    reach = float(np.quantile(np.abs(known), 0.998)) if known.size else 1.0
+    edges = np.linspace(-reach, reach, 90)
+    for residual, colour, name in residuals:
+        left.hist(residual[rows], bins=edges, density=True, histtype="step", color=colour, linewidth=1.3, label=name)
+        frequency, power = _spectrum(residual, series)
+        right.loglog(frequency[1:], power[1:], color=colour, linewidth=1.2, label=name)
+    if floor_percent > 0:
+        bell = np.exp(-0.5 * (edges / floor_percent) ** 2) / (floor_percent * np.sqrt(2 * np.pi))
+        left.fill_between(edges, bell, color=FLOOR, alpha=0.7, linewidth=0, label="noise floor")
+    left.set_yscale("log")
+    left.set_ylim(bottom=1e-3)
+    tidy(left, "residual [% of travel]", "density")
+    tidy(right, "frequency [Hz]", "power density [%²/Hz]")
+    _legend(left)
+    return figure
+
+
+def _spectrum(residual: FloatArray, series: Series) -> tuple[FloatArray, FloatArray]:
+    from scipy.signal import welch
+
+    step = np.diff(series.run_time_s)
+    rate = 1.0 / float(np.median(step)) if step.size else 1.0
+    length = int(min(residual.size, max(256, residual.size // 12)))
+    frequency, power = welch(np.nan_to_num(residual), fs=rate, nperseg=length)
+    return np.asarray(frequency), np.asarray(power)
+
+
+def _residuals(axes: Axes, series: Series, time: FloatArray, floor: float, rows: slice = slice(None)) -> None:
+    axes.axhspan(-2 * floor, 2 * floor, color=FLOOR, alpha=0.55, linewidth=0, label="noise floor (2 sigma)")
+    for model, colour, width in ((series.before, BEFORE, 0.9), (series.after, AFTER, 0.9)):
+        _line(axes, time, series.percent(series.position - model)[rows], colour, "", width)
+
+
+def _line(
+    axes: Axes,
+    x: FloatArray,
+    y: FloatArray,
+    colour: str,
+    label: str,
+    width: float,
+    alpha: float = 1.0,
+    dashed: bool = False,
+) -> None:
+    rows = thin(y, _POINTS)
+    style = (0, (4, 2)) if dashed else "-"
+    axes.plot(x[rows], y[rows], color=colour, label=label or None, linewidth=width, alpha=alpha, linestyle=style)
+
+
+def _path(axes: Axes, x: FloatArray, y: FloatArray, colour: str, label: str, width: float, alpha: float) -> None:
+    """A line in the plane, thinned along both coordinates."""
+    rows = np.union1d(thin(x, 2 * _POINTS), thin(y, 2 * _POINTS))
+    axes.plot(x[rows], y[rows], color=colour, label=label, linewidth=width, alpha=alpha)
+
+
+def _shade_heldout(axes: Axes, series: Series, time: FloatArray) -> None:
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], series.heldout, [False]]).astype(np.int8)))
+    for number, (start, stop) in enumerate(zip(edges[::2], edges[1::2], strict=True)):
+        label = "held out" if number == 0 and not series.heldout.all() else None
+        axes.axvspan(time[start], time[stop - 1], color=HELDOUT, linewidth=0, zorder=0, label=label)
+
+
+def _legend(axes: Axes) -> None:
+    axes.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=6, frameon=False, labelcolor=MUTED, fontsize=9)

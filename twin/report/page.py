@@ -1,0 +1,103 @@
+"""The report: one self-contained HTML page that an operator prints and a professor checks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from twin.diagnosis import Diagnosis
+from twin.report.content import (
+    cause_rows,
+    columns,
+    confusion_lines,
+    gap_marks,
+    plain_rows,
+    ranking_rows,
+    share_bars,
+    tested_rows,
+)
+from twin.report.series import Series
+from twin.report.words import VERDICTS, interval, name, number, percent
+
+_TEMPLATE = Path(__file__).parent / "template.html.j2"
+
+
+def write_report(diagnosis: Diagnosis, series: Series, path: Path) -> None:
+    """Writes the page; nothing in it refers to anything outside it. Takes a second or two, whatever the rows."""
+    path.write_text(render(diagnosis, series), encoding="utf-8")
+
+
+def render(diagnosis: Diagnosis, series: Series) -> str:
+    """The page as text; the same input gives the same text."""
+    import jinja2
+
+    environment = jinja2.Environment(
+        autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
+    )
+    template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
+    return template.render(
+        d=diagnosis,
+        verdict=VERDICTS[diagnosis.verdict],
+        figures=_figures(diagnosis, series),
+        records=_records(series),
+        causes=cause_rows(diagnosis.causes),
+        ranking=ranking_rows(diagnosis),
+        confusion=confusion_lines(diagnosis),
+        tests=tested_rows(diagnosis),
+        marks=gap_marks(diagnosis.gap),
+        signature=plain_rows(diagnosis.residual_signature),
+        noise=plain_rows(diagnosis.noise),
+        closed_loop=plain_rows(diagnosis.closed_loop),
+        name=name,
+        number=number,
+        percent=percent,
+        interval=interval,
+        **_where(diagnosis, series),
+    )
+
+
+def _where(diagnosis: Diagnosis, series: Series) -> dict[str, object]:
+    where = diagnosis.where
+    minutes = where.time is not None and where.time[-1].high > 600.0
+    return {
+        "stage": share_bars(where.stage),
+        "attributed": share_bars(where.attributed),
+        "direction": share_bars(where.direction),
+        "regime": share_bars(where.regime),
+        "binned": [
+            ("position", "% of travel", columns(where.position, 100.0 / series.travel)),
+            ("pressure", series.pressure_unit, columns(where.pressure)),
+            ("run time", "min" if minutes else "s", columns(where.time, 1.0 / 60.0 if minutes else 1.0)),
+            ("frequency", "Hz", columns(where.frequency)),
+        ],
+    }
+
+
+def _figures(diagnosis: Diagnosis, series: Series) -> dict[str, str]:
+    """The drawn figures by name; text is drawn here so that no figure can fail for want of rows."""
+    from twin.report.figures import close_up, over_time, planes, residual_shape
+
+    if series.time_s.size < 100:
+        return {}
+    floor = diagnosis.gap.noise_floor
+    return {
+        "close_up": close_up(series, floor),
+        "planes": planes(series),
+        "over_time": over_time(series, floor),
+        "residual_shape": residual_shape(series, floor),
+    }
+
+
+def _records(series: Series) -> list[tuple[str, str]]:
+    """Name and a line of facts of each recording."""
+    which = np.zeros(series.time_s.size, dtype=np.int64) if series.record is None else series.record
+    rows: list[tuple[str, str]] = []
+    for number_, label in enumerate(series.names):
+        at = np.flatnonzero(which == number_)
+        if at.size > 1:
+            duration = float(series.time_s[at[-1]] - series.time_s[at[0]])
+            rate = (at.size - 1) / duration if duration > 0 else float("nan")
+            held = 100.0 * float(np.mean(series.heldout[at]))
+            rows.append((label, f"{at.size:,} rows, {duration:,.0f} s at {rate:.3g} Hz, {held:.0f} % held out"))
+    return rows

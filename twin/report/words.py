@@ -1,0 +1,64 @@
+"""The report's words: names as an engineer says them, numbers with as many digits as they deserve."""
+
+from __future__ import annotations
+
+from math import floor, isfinite, log10
+
+VERDICTS = {
+    "no_gap": "No gap",
+    "parameter": "A design number is off",
+    "effect": "One effect is missing",
+    "effects": "Several effects are missing",
+    "unexplained": "A gap that no candidate explains",
+}
+_NAMES = {
+    "ep": "E/P transducer",
+    "actuator_or_sensor": "actuator or sensor",
+    "actuator": "actuator",
+    "sensor": "position sensor",
+    "end_stop": "end stop",
+    "parameter:deadband": "design number: deadband a1 - a2",
+    "parameter:offset": "design number: offset (a1 + a2) / 2",
+    "parameter:compliance": "design number: compliance",
+    "parameter:tau": "design number: valve time constant",
+    "parameter:rate_limit": "design number: rate limit",
+    "parameter:ep_tau": "design number: E/P time constant",
+    "high_frequency": "fast changes",
+    "repeats": "repeated commands",
+    "still": "still stretches",
+}
+
+
+def name(key: str) -> str:
+    """A key of the vocabulary in words."""
+    return _NAMES.get(key, key.replace("_", " "))
+
+
+def number(value: object, digits: int = 3) -> str:
+    """A number with `digits` significant digits and no exponent between 0.0001 and 1e6; words for what is none."""
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return "-" if value is None else str(value)
+    if not isfinite(value):
+        return "-"
+    if value == 0:
+        return "0"
+    place = floor(log10(abs(value)))
+    if not -5 < place < 6:
+        return f"{value:.{digits - 1}e}"
+    return f"{value:.{max(0, digits - 1 - place)}f}"
+
+
+def percent(value: float, digits: int = 0) -> str:
+    """A share in percent; what rounds to certainty without being it says so."""
+    if not isfinite(value):
+        return "-"
+    if digits == 0 and 0.995 <= value < 1.0:
+        return "> 99 %"
+    if digits == 0 and 0.0 < value < 0.005:
+        return "< 1 %"
+    return f"{100 * value:.{digits}f} %"
+
+
+def interval(ci95: tuple[float, float], digits: int = 3) -> str:
+    """An interval, both ends to the digits of the narrower need."""
+    return f"{number(ci95[0], digits)} to {number(ci95[1], digits)}"
