@@ -37,4 +37,5 @@ def run_of_recording(recording: Recording, path: Path) -> Run:
         columns=columns,
         units={name: named[name][1] for name in columns},
         stop=Stop("success", "imported file", rows=recording.n),
+        imported=recording,
     )

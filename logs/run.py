@@ -60,6 +60,7 @@ class Run:
     stop: Stop | None = None
     problems: tuple[str, ...] = ()
     running: bool = False
+    imported: Recording | None = None  # what a stranger's file was read as; None for a run of ours
 
     @property
     def rows(self) -> int:
@@ -96,6 +97,8 @@ class Run:
 
         Raises: `BadInput` when a needed column is missing, or the record holds no usable sample.
         """
+        if self.imported is not None:
+            return self.imported
         from logs.load import recording_of_run
 
         return recording_of_run(self)
