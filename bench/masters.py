@@ -134,7 +134,7 @@ class PymodbusSync(Master):
         return _pymodbus_registers(_pymodbus_call(self._client, question), question)
 
     def close(self) -> None:
-        self._client.close()
+        self._client.close()  # type: ignore[no-untyped-call]
 
 
 class PymodbusAsync(Master):

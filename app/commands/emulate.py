@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import signal
+import sys
 import threading
 from pathlib import Path
 from types import FrameType
@@ -14,7 +15,6 @@ import click
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
-    from hal.profile import Profile
     from sim_device.server import VirtualDevice
     from sim_device.valve import ValvePhysics
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 @click.option("--port-link", type=click.Path(path_type=Path), help="Stable name for the pseudo-terminal.")
 @click.option("--tcp", metavar="HOST:PORT", help="Listen with Modbus TCP, or with rtu+tcp://HOST:PORT for RTU frames.")
 @click.option("--profile", "profile_name", default="virtual", show_default=True, help="Profile name or .toml file.")
-@click.option("--physics", default="thesis", show_default=True, help="The valve behind the registers.")
+@click.option("--physics", metavar="NAME", help="The valve behind the registers.  [default: what the profile commands]")
 @click.option("--effect", "effects", multiple=True, metavar="NAME=SIZE", help="Something wrong with the valve.")
 @click.option("--time", "time_kind", type=click.Choice(["real", "stepped"]), default="real", show_default=True,
               help="Stepped: virtual time, moved by the master through the simulation registers.")  # fmt: skip
@@ -41,7 +41,7 @@ def command(
     port_link: Path | None,
     tcp: str | None,
     profile_name: str,
-    physics: str,
+    physics: str | None,
     effects: tuple[str, ...],
     time_kind: str,
     faults: tuple[str, ...],
@@ -63,6 +63,7 @@ def command(
     from sim_device.server import VirtualDevice
 
     profile = load_profile(profile_name)
+    physics = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
     stepped = time_kind == "stepped"
     device = VirtualDevice(
         profile,
@@ -74,7 +75,8 @@ def command(
         pace_baud=pace,
         options=Options(refresh_s=refresh, simulation_block=stepped),
     )
-    _serve(device, profile, physics, as_json)
+    said: dict[str, object] = {"units": sorted(device.units), "profile": profile_name, "physics": physics}
+    _serve(device, said, as_json)
 
 
 def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
@@ -88,10 +90,11 @@ def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
             sizes[name] = float(size)
         except ValueError:
             raise BadInput(f"effect '{text}' has no size; write NAME=NUMBER, for example stiction=0.4") from None
-    return make_physics(physics, seed, **({"effects": sizes} if sizes else {}))
+    options: dict[str, object] = {"effects": sizes} if sizes else {}
+    return make_physics(physics, seed, **options)
 
 
-def _serve(device: VirtualDevice, profile: Profile, physics: str, as_json: bool) -> None:
+def _serve(device: VirtualDevice, said: dict[str, object], as_json: bool) -> None:
     stop = threading.Event()
 
     def end(_number: int, _frame: FrameType | None) -> None:
@@ -100,7 +103,7 @@ def _serve(device: VirtualDevice, profile: Profile, physics: str, as_json: bool)
     before = {number: signal.signal(number, end) for number in (signal.SIGTERM, signal.SIGHUP)}
     try:
         with device:
-            _announce(device, profile, physics, as_json)
+            _announce(device, said, as_json)
             while not stop.wait(timeout=0.5):  # wakes, so that a signal is seen on every platform
                 pass
     finally:
@@ -108,13 +111,13 @@ def _serve(device: VirtualDevice, profile: Profile, physics: str, as_json: bool)
             signal.signal(number, handler)
 
 
-def _announce(device: VirtualDevice, profile: Profile, physics: str, as_json: bool) -> None:
-    units = sorted(device.units)
+def _announce(device: VirtualDevice, said: dict[str, object], as_json: bool) -> None:
+    port, url = device.port, device.tcp_url
     if as_json:
-        place = {"port": device.port, "tcp": device.tcp_url or None, "units": units}
-        click.echo(json.dumps(place | {"profile": profile.name, "physics": physics}))
+        click.echo(json.dumps({"port": port, "tcp": url or None} | said))
     else:
-        shown = " and ".join(dict.fromkeys(item for item in (device.port, device.tcp_url) if item))
-        click.echo(f"virtual valve ({physics}) as '{profile.name}', unit {', '.join(map(str, units))}, on {shown}")
-        click.echo(f"try: lostmotion check --port {device.port} --profile {profile.name}    (Ctrl-C stops it)")
-    click.get_text_stream("stdout").flush()
+        places = " and ".join(dict.fromkeys(place for place in (port, url) if place))
+        units = ", ".join(str(unit) for unit in device.units)
+        click.echo(f"virtual valve ({said['physics']}) with profile {said['profile']}, unit {units}, on {places}")
+        click.echo(f"try: lostmotion check --port {port} --profile {said['profile']}    (Ctrl-C stops it)")
+    sys.stdout.flush()
