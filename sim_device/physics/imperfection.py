@@ -19,7 +19,8 @@ class Imperfection:
 
     `sizes` are small, medium and large [unit], chosen so that the position differs from the healthy one by about
     2, 6 and 20 times the reading noise over a mixed sweep, as far as the mechanism can do that.
-    `forms` are the laws that physics knows for it; the first is the default. `outsider` marks a fault that no effect
+    `forms` are the laws that physics knows for it; the first is the default. `scales` are the factors on `sizes` with
+    which the forms do about as much (none: all 1). `outsider` marks a fault that no effect
     of the shared vocabulary describes.
     """
 
@@ -29,10 +30,16 @@ class Imperfection:
     sizes: tuple[float, float, float]
     claim: str
     forms: tuple[str, ...] = ("default",)
+    scales: tuple[float, ...] = ()
     limit: float = float("inf")
     signed: bool = False
     outsider: bool = False
     source: str = ""
+
+    def size(self, grade: int, form: str = "") -> float:
+        """The small (0), medium (1) or large (2) size in `form`, the default one if empty [unit]."""
+        scale = self.scales[self.forms.index(form)] if self.scales and form else 1.0
+        return self.sizes[grade] * scale
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,11 +10,13 @@ from sim_device.physics.imperfection import Imperfection
 from sim_device.physics.thesis.record import DesignNumbers
 
 PARAMETERS = (
-    Imperfection("parameter:deadband", "actuator", "psi", (0.04, 0.12, 0.4), "a1 - a2 differs by `size`.", signed=True),
     Imperfection(
-        "parameter:offset", "actuator", "psi", (0.02, 0.06, 0.2), "(a1 + a2) / 2 differs by `size`.", signed=True
+        "parameter:deadband", "actuator", "psi", (0.018, 0.055, 0.19), "a1 - a2 is off by `size`.", signed=True
     ),
-    Imperfection("parameter:compliance", "actuator", "1", (0.01, 0.03, 0.1), "k is (1 + size) times.", signed=True),
+    Imperfection(
+        "parameter:offset", "actuator", "psi", (0.009, 0.027, 0.09), "(a1 + a2) / 2 differs by `size`.", signed=True
+    ),
+    Imperfection("parameter:compliance", "actuator", "1", (0.0055, 0.016, 0.055), "k is 1 + size times.", signed=True),
     Imperfection("parameter:tau", "actuator", "1", (0.05, 0.15, 0.5), "tau is (1 + size) times.", signed=True),
     Imperfection(
         "parameter:rate_limit", "actuator", "1", (0.1, 0.25, 0.5), "The rate limit is (1 - size) times.", signed=True

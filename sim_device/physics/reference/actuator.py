@@ -17,7 +17,7 @@ IMPERFECTIONS = (
         "nonlinear_spring",
         "actuator",
         "1",
-        (0.03, 0.1, 0.3),
+        (0.017, 0.05, 0.17),
         "A progressive spring: its rate is `size` times lower at the open end and higher at the closed end.",
         limit=0.9,
         signed=True,
@@ -26,7 +26,7 @@ IMPERFECTIONS = (
         "asymmetric_damping",
         "actuator",
         "1",
-        (0.1, 0.3, 1.0),
+        (0.035, 0.12, 0.5),
         "The check valve beside the needle leaks: exhausting the chamber has (1 + size) times the conductance.",
         limit=20.0,
     ),
@@ -34,7 +34,7 @@ IMPERFECTIONS = (
         "friction_in_motion",
         "actuator",
         "1",
-        (0.1, 0.3, 0.9),
+        (0.045, 0.15, 0.9),
         "This share of the needle's resistance is taken out and put into viscous drag of the stem instead.",
         limit=0.95,
     ),
@@ -50,7 +50,7 @@ IMPERFECTIONS = (
         "reduced_travel",
         "actuator",
         "in",
-        (0.008, 0.025, 0.08),
+        (0.0026, 0.0078, 0.025),
         "The closed stop (or the open one) stands `size` inside the travel.",
         forms=("closed", "open"),
         limit=0.4,
@@ -59,7 +59,7 @@ IMPERFECTIONS = (
         "additional_lag",
         "actuator",
         "l",
-        (0.3, 1.0, 3.0),
+        (0.1, 0.3, 1.0),
         "A damping tank of `size` litres in the middle of the needle line.",
         limit=30.0,
     ),
@@ -67,7 +67,7 @@ IMPERFECTIONS = (
         "flow_force",
         "actuator",
         "psi",
-        (2.0, 6.0, 20.0),
+        (0.36, 1.1, 3.5),
         "Oil with a pressure drop of `size` across a plug of 1.5 in2 pushes it open, most at half opening.",
         limit=100.0,
         signed=True,
@@ -76,7 +76,7 @@ IMPERFECTIONS = (
         "thermal_spring",
         "actuator",
         "1",
-        (0.02, 0.06, 0.2),
+        (0.007, 0.021, 0.075),
         "The hot valve body heats the spring and its rate breathes by `size` every 170 s.",
         limit=0.5,
         outsider=True,
@@ -85,7 +85,7 @@ IMPERFECTIONS = (
         "diaphragm_hole",
         "actuator",
         "mm2",
-        (0.02, 0.06, 0.2),
+        (0.0066, 0.02, 0.073),
         "A torn diaphragm leaks through `size` when fully stretched and through nothing when the valve is open.",
         limit=5.0,
         outsider=True,
@@ -94,7 +94,7 @@ IMPERFECTIONS = (
         "snap_region",
         "actuator",
         "psi",
-        (0.15, 0.4, 1.0),
+        (0.012, 0.035, 0.12),
         "A buckled spring seat gives way by `size` around mid-travel, faster than the spring stiffens.",
         limit=3.0,
         outsider=True,
@@ -103,29 +103,34 @@ IMPERFECTIONS = (
         "water_slug",
         "actuator",
         "1",
-        (0.05, 0.15, 0.45),
-        "Water in the tubing nearly blocks the needle for 7 s; `size` is the chance of it in every 14 s.",
-        limit=0.9,
+        (0.08, 0.23, 0.5),
+        "Water in the tubing takes `size` of the needle's conductance for 7 s, in one of three spells of 14 s.",
+        limit=0.99,
         outsider=True,
     ),
 )
 
 _RELAX_S = (10.0, 70.0)
 _HEATING_S = 170.0
+_SMALLEST_TANK_L = 0.02  # below this the fitting itself is the tank, and the explicit step would be too long
 _PLUG_M2 = 1.5 * INCH * INCH
 
 
 @compiled
-def _needle(q: Any, s: Any, upstream: float, downstream: float, times: float) -> float:
-    """Mass flow through the needle (or `times` its conductance) from one gauge pressure to another [Pa]; kg/s."""
-    conductance = q.needle * times / (1.0 - q.friction_in_motion)
+def _needle(q: Any, s: Any, upstream: float, downstream: float, halves: float) -> float:
+    """Mass flow through the needle from one gauge pressure to another [Pa]; kg/s.
+
+    With `halves` = 2 it is one of two halves of the needle in series, which together pass what the whole one does.
+    """
+    laminar = 1.0 - (1.0 - q.needle_laminar) / halves
+    conductance = q.needle * math.sqrt(halves) / (1.0 - q.friction_in_motion)
     if upstream < downstream:
         conductance *= 1.0 + q.asymmetric_damping
     if q.water_slug > 0.0:
         window = int(s.time / 14.0)
-        if uniform(s.seed, TELEGRAPH, 1000 + window) < q.water_slug and s.time - 14.0 * window < 7.0:
-            conductance *= 0.03
-    return flow(conductance, q.needle_b, q.needle_laminar, upstream + ATMOSPHERE, downstream + ATMOSPHERE)
+        if uniform(s.seed, TELEGRAPH, 1000 + window) < 0.33 and s.time - 14.0 * window < 7.0:
+            conductance *= 1.0 - q.water_slug
+    return flow(conductance, q.needle_b, laminar, upstream + ATMOSPHERE, downstream + ATMOSPHERE)
 
 
 @compiled
@@ -144,7 +149,7 @@ def fill(q: Any, s: Any, booster: float, booster_slope: float, h: float) -> None
     if q.additional_lag > 0.0:
         into_tank = _needle(q, s, s.line, s.tank, 2.0)
         into_chamber = _needle(q, s, s.tank, s.chamber, 2.0)
-        s.tank += h * stiffness * (into_tank - into_chamber) / (1.0e-3 * q.additional_lag)
+        s.tank += h * stiffness * (into_tank - into_chamber) / (1.0e-3 * max(q.additional_lag, _SMALLEST_TANK_L))
         leaves_line = into_tank
     else:
         into_chamber = _needle(q, s, s.line, s.chamber, 1.0)
@@ -229,4 +234,3 @@ def _needle_drag(q: Any) -> float:
     drop = 0.2 * PSI
     mass_flow = flow(q.needle, q.needle_b, q.needle_laminar, upstream, upstream - drop)
     return float(AREA * drop / (mass_flow * GAS / upstream / AREA))
-

@@ -19,9 +19,10 @@ IMPERFECTIONS = (
         "ep_calibration",
         "ep",
         "psi",
-        (0.03, 0.1, 0.35),
+        (0.0085, 0.025, 0.085),
         "The zero screw is off by `size`, or the span screw by `size` at 15 psi.",
         forms=("zero", "span"),
+        scales=(1.0, 2.0),
         limit=5.0,
         signed=True,
     ),
@@ -29,7 +30,7 @@ IMPERFECTIONS = (
         "ep_deadband",
         "ep",
         "psi",
-        (0.06, 0.2, 0.6),
+        (0.02, 0.06, 0.21),
         "The booster's ports overlap: neither opens within half of `size` either side of balance.",
         limit=5.0,
     ),
@@ -37,7 +38,7 @@ IMPERFECTIONS = (
         "fill_exhaust_asymmetry",
         "ep",
         "1",
-        (9.0, 30.0, 100.0),
+        (0.5, 1.0, 2.2),
         "Dirt in the exhaust port cuts its conductance to 1/(1 + size); negative sizes are dirt in the supply port.",
         limit=1000.0,
         signed=True,
@@ -46,7 +47,7 @@ IMPERFECTIONS = (
         "ep_rate_limit",
         "ep",
         "1",
-        (9.0, 30.0, 100.0),
+        (0.5, 1.0, 2.1),
         "A clogged filter in the line behind the booster cuts both ports to 1/(1 + size) of their conductance.",
         limit=1000.0,
     ),
@@ -54,7 +55,7 @@ IMPERFECTIONS = (
         "supply_saturation",
         "ep",
         "psi",
-        (8.4, 8.8, 9.8),
+        (7.2, 7.6, 8.2),
         "The air supply is `size` below its 20 psi; the booster cannot give more than the supply has.",
         limit=19.0,
     ),
@@ -62,7 +63,7 @@ IMPERFECTIONS = (
         "supply_cycling",
         "ep",
         "psi",
-        (2.0, 6.0, 12.0),
+        (0.45, 1.3, 4.4),
         "The supply swings by `size` with the compressor and lifts the nozzle by 3 % of that.",
         limit=15.0,
         outsider=True,
@@ -71,7 +72,7 @@ IMPERFECTIONS = (
         "pilot_limit_cycle",
         "ep",
         "psi",
-        (0.06, 0.2, 0.6),
+        (0.06, 0.2, 0.4),
         "The flapper's pivot sticks within `size` while its integrator pushes on, so the converter hunts by itself.",
         limit=3.0,
         outsider=True,
@@ -132,7 +133,7 @@ def _wish(q: Any, s: Any, h: float) -> float:
         s.supply = 20.0 - q.supply_saturation + q.supply_cycling * swing
         psi += 0.03 * q.supply_cycling * swing
     if q.pilot_limit_cycle > 0.0:
-        s.trim += (psi - s.line / PSI) * h / 2.0
+        s.trim += (psi - s.line / PSI) * h / 8.0
         s.trim = min(max(s.trim, -1.5), 1.5)
         if abs(psi + s.trim - s.flapper) > q.pilot_limit_cycle:
             s.flapper = psi + s.trim

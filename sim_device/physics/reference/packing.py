@@ -19,15 +19,15 @@ IMPERFECTIONS = (
         "stiction",
         "actuator",
         "psi",
-        (0.1, 0.3, 0.9),
-        "Dry packing: breakaway exceeds sliding friction by `size`, recovered within seconds of rest.",
+        (0.02, 0.07, 0.26),
+        "Dry packing: breakaway exceeds sliding friction by `size`, the last 40 % of it after seconds of rest.",
         limit=5.0,
     ),
     Imperfection(
         "spring_asymmetry",
         "actuator",
         "psi",
-        (0.05, 0.15, 0.5),
+        (0.017, 0.05, 0.18),
         "A tilted stem wedges: friction grows by `size` from open to closed, so both curves change their slope.",
         limit=2.0,
         signed=True,
@@ -36,7 +36,7 @@ IMPERFECTIONS = (
         "distributed_hysteresis",
         "actuator",
         "in",
-        (0.02, 0.06, 0.2),
+        (0.004, 0.015, 0.05),
         "Sixty percent of the friction is in rings so soft that they slip only after up to `size` of motion.",
         limit=1.0,
     ),
@@ -44,7 +44,7 @@ IMPERFECTIONS = (
         "position_dependent_friction",
         "actuator",
         "psi",
-        (0.1, 0.3, 0.9),
+        (0.04, 0.125, 0.41),
         "A scored stem grips harder by `size` around one place of the stroke.",
         limit=1.4,
         signed=True,
@@ -53,7 +53,7 @@ IMPERFECTIONS = (
         "friction_drift",
         "actuator",
         "psi",
-        (0.06, 0.2, 0.7),
+        (0.011, 0.035, 0.12),
         "The packing swells with heat: sliding friction grows by `size`, two thirds of it within 5 min.",
         limit=1.4,
         signed=True,
@@ -62,7 +62,7 @@ IMPERFECTIONS = (
         "intermittent_sticking",
         "actuator",
         "1",
-        (0.05, 0.15, 0.45),
+        (0.02, 0.08, 0.25),
         "Coke between stem and bonnet triples the friction for 6 s; `size` is the chance of it in every 12 s.",
         limit=0.9,
         outsider=True,
@@ -108,7 +108,7 @@ def bristles(q: Any, s: Any, h: float) -> tuple[float, float]:
         s.rest = min(s.rest + h, 60.0)
     else:
         s.rest *= math.exp(-abs(s.v) * h / 1.0e-5)
-    extra = (q.breakaway - 1.0) * level + q.stiction * PSI * AREA * (1.0 - math.exp(-s.rest / _AGEING_S))
+    extra = (q.breakaway - 1.0) * level + q.stiction * PSI * AREA * (1.0 - 0.4 * math.exp(-s.rest / _AGEING_S))
     g = max(level + extra * math.exp(-((s.v / q.stribeck) ** 2)), 1.0)
     keep = 1.0 / (1.0 + h * abs(s.v) * q.bristle / g)
     force = q.bristle * keep * s.bristle - q.bristle_damping * (1.0 - keep) * s.bristle / h
@@ -121,7 +121,7 @@ def settle_bristles(q: Any, s: Any, v: float, h: float) -> None:
     level = sliding(q, s)
     if q.distributed_hysteresis > 0.0:
         level *= 1.0 - _SOFT_SHARE
-    extra = (q.breakaway - 1.0) * level + q.stiction * PSI * AREA * (1.0 - math.exp(-s.rest / _AGEING_S))
+    extra = (q.breakaway - 1.0) * level + q.stiction * PSI * AREA * (1.0 - 0.4 * math.exp(-s.rest / _AGEING_S))
     g = max(level + extra * math.exp(-((s.v / q.stribeck) ** 2)), 1.0)
     s.bristle = (s.bristle + h * v) / (1.0 + h * abs(s.v) * q.bristle / g)
 

@@ -11,16 +11,23 @@ from sim_device.physics.reference.record import AREA, PSI, Build
 
 PARAMETERS = (
     Imperfection(
-        "parameter:deadband", "actuator", "psi", (0.04, 0.12, 0.4), "The gland nut is tighter by `size`.", signed=True
+        "parameter:deadband",
+        "actuator",
+        "psi",
+        (0.018, 0.055, 0.19),
+        "The gland is tighter by `size`.",
+        signed=True,
     ),
     Imperfection(
-        "parameter:offset", "actuator", "psi", (0.02, 0.06, 0.2), "The preload screw is off by `size`.", signed=True
+        "parameter:offset", "actuator", "psi", (0.009, 0.027, 0.09), "The preload screw is off by `size`.", signed=True
     ),
     Imperfection(
-        "parameter:compliance", "actuator", "1", (0.01, 0.03, 0.1), "A spring softer by `size`.", signed=True
+        "parameter:compliance", "actuator", "1", (0.0055, 0.016, 0.055), "A spring softer by `size`.", signed=True
     ),
-    Imperfection("parameter:tau", "actuator", "1", (0.05, 0.15, 0.5), "Grease thicker by `size`.", signed=True),
-    Imperfection("parameter:rate_limit", "actuator", "1", (0.1, 0.25, 0.5), "A needle tighter by `size`.", signed=True),
+    Imperfection("parameter:tau", "actuator", "1", (0.04, 0.12, 0.4), "Grease thicker by `size`.", signed=True),
+    Imperfection(
+        "parameter:rate_limit", "actuator", "1", (0.028, 0.075, 0.25), "The needle is in by `size`.", signed=True
+    ),
     Imperfection("parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "A larger signal chamber.", signed=True),
 )
 
@@ -46,10 +53,12 @@ def _rebuilt(b: Build, name: str, size: float) -> Build:
         case "offset" if size > -5:
             return replace(b, preload=b.preload + size * PSI * AREA)
         case "compliance" if size > -0.9:
-            return replace(b, spring=b.spring / (1 + size))
-        case "tau" if size > -0.4:
-            # grease acts on small motions; the needle, which bounds fast ones, is opened by as much as it costs
-            return replace(b, viscous=b.viscous * (1 + 2 * size))
+            # a softer spring alone would also slow the valve; thinner grease and a freer gap make up for that
+            laminar = 1 - (1 - b.needle_laminar) / (1 + size) ** 2
+            return replace(b, spring=b.spring / (1 + size), viscous=b.viscous / (1 + size), needle_laminar=laminar)
+        case "tau" if size > -0.25:
+            # the packing's drag is some 0.3 of what makes tau; the needle makes the rest
+            return replace(b, viscous=b.viscous * (1 + 3.5 * size))
         case "rate_limit" if 0 <= size < 0.9:
             # a tighter needle whose gap is longer: slow motion, which it passes laminar, meets the same resistance
             narrow = 1 - size

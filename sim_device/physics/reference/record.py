@@ -39,26 +39,26 @@ class Build:
     port_b: float = 0.35  # critical pressure ratio
     line_volume: float = 1.5e-4  # m3, booster chamber and 3 m of tubing
     # speed-control needle between line and diaphragm chamber
-    needle: float = 1.3e-9  # m3/(s Pa)
+    needle: float = 2.0e-9  # m3/(s Pa)
     needle_b: float = 0.25
-    needle_laminar: float = 0.985  # pressure ratio above which its long gap flows laminar
+    needle_laminar: float = 0.967  # pressure ratio above which its long gap flows laminar
     # actuator
-    chamber_volume: float = 2.5e-4  # m3 with the valve fully open
+    chamber_volume: float = 1.2e-4  # m3 with the valve fully open
     area_loss: float = 0.03  # share of the effective area that is lost over the stroke
     polytropic: float = 1.15
-    preload: float = 7.30 * PSI * AREA  # N
-    spring: float = 4.1e4  # N/m
+    preload: float = 7.314 * PSI * AREA  # N
+    spring: float = 4.06e4  # N/m
     mass: float = 4.0  # kg
     travel: float = 0.5625 * INCH  # m
     stop_stiffness: float = 3.0e8  # N/m
     stop_damping: float = 3.0e5  # N s/m
-    # packing: LuGre
-    sliding: float = 1.48 * PSI * AREA  # N
+    # the packing as LuGre bristles
+    sliding: float = 1.4215 * PSI * AREA  # N
     breakaway: float = 1.02  # times sliding
     stribeck: float = 2.5e-4  # m/s
     bristle: float = 6.0e6  # N/m
     bristle_damping: float = 2.0e4  # N s/m
-    viscous: float = 6.0e4  # N s/m
+    viscous: float = 4.0e4  # N s/m
     # LVDT electronics
     filter_omega: float = 2.0 * np.pi * 25.0  # rad/s, second-order demodulator filter
     filter_damping: float = 0.8
@@ -106,9 +106,7 @@ STATE = np.dtype(
 )
 
 
-def settings(
-    known: tuple[Imperfection, ...], build: Build, chosen: list[Chosen], noise: float
-) -> NDArray[np.void]:
+def settings(known: tuple[Imperfection, ...], build: Build, chosen: list[Chosen], noise: float) -> NDArray[np.void]:
     """A settings record of shape (1,): the build, the noise factor, and size and form of every imperfection."""
     numbers = asdict(build)
     record = np.zeros(1, np.dtype([(name, "f8") for name in numbers] + [("noise", "f8"), *fields(known)]))

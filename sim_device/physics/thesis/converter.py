@@ -24,7 +24,7 @@ IMPERFECTIONS = (
         "ep_rate_limit",
         "ep",
         "s/psi",
-        (0.15, 0.5, 2.0),
+        (0.075, 0.12, 0.3),
         "The pressure cannot change faster than 1/size psi/s, in both directions or only rising.",
         forms=("both", "rise"),
         limit=60.0,
@@ -33,17 +33,18 @@ IMPERFECTIONS = (
         "supply_saturation",
         "ep",
         "psi",
-        (3.4, 3.8, 4.8),
-        "The pressure stays below 15 psi - size; or half of that, and every filling makes the supply droop besides.",
+        (3.28, 3.31, 3.4),
+        "The pressure stays below 15 psi - size; or 0.9 of that, and every filling makes the supply droop.",
         forms=("ceiling", "droop"),
+        scales=(1.0, 0.97),
         limit=12.0,
     ),
     Imperfection(
-        "relief_valve",
+        "pressure_surge",
         "ep",
         "psi",
-        (0.2, 0.6, 2.0),
-        "Above 9 psi a relief valve lifts for 2 s in every 23 s and pulls the pressure down towards `size` below it.",
+        (0.022, 0.067, 0.22),
+        "Every 23 s a neighbour on the same air lets go and the pressure bulges by up to `size` for some 2 s.",
         limit=6.0,
         outsider=True,
     ),
@@ -51,7 +52,7 @@ IMPERFECTIONS = (
 
 NOMINAL_CEILING_PSI = 15.0
 _DROOP_RECOVERY_S = 20.0
-_RELIEF_PERIOD_S, _RELIEF_OPEN_S, _RELIEF_LIFT_PSI = 23.0, 2.0, 9.0
+_SURGE_PERIOD_S, _SURGE_S = 23.0, 2.0
 _WANDER_TICK_S, _WANDER_TAU_S, _WANDER_PSI = 0.5, 40.0, 0.003
 
 
@@ -80,35 +81,36 @@ def _time_constant(q: Any, s: Any, u: float) -> float:
 
 
 @compiled
-def _ceiling(q: Any, s: Any, risen: float, h: float) -> float:
+def _capped(q: Any, s: Any, p: float, h: float) -> float:
+    """The pressure that the supply can give; in the second form the supply droops with what was drawn from it."""
     if q.supply_saturation_form == 0:
-        return float(NOMINAL_CEILING_PSI - q.supply_saturation)
-    # reservoir holds how far the supply has drooped below its rest [psi]
-    s.reservoir += q.supply_saturation * max(risen, 0.0) / 3.0 - s.reservoir * h / _DROOP_RECOVERY_S
+        return float(min(p, max(NOMINAL_CEILING_PSI - q.supply_saturation, 0.0)))
+    # reservoir is how far the supply has drooped below its rest [psi]
+    p = min(p, max(NOMINAL_CEILING_PSI - 0.9 * q.supply_saturation - s.reservoir, 0.0))
+    s.reservoir += 0.05 * q.supply_saturation * max(p - s.pressure, 0.0) - s.reservoir * h / _DROOP_RECOVERY_S
     s.supply = 20.0 - s.reservoir
-    return float(NOMINAL_CEILING_PSI - 0.5 * q.supply_saturation - s.reservoir)
+    return float(p)
 
 
 @compiled
-def _relieved(q: Any, s: Any, p: float, h: float) -> float:
-    share = (s.time + uniform(s.seed, PHASE, 1) * _RELIEF_PERIOD_S) % _RELIEF_PERIOD_S
-    if p > _RELIEF_LIFT_PSI and share < _RELIEF_OPEN_S:
-        return float(p - q.relief_valve * (1.0 - math.exp(-h / 0.4)) / max(q.ep_tau / 0.4, 0.5))
-    return p
+def _surge(q: Any, s: Any) -> float:
+    """How far the pressure is pushed up now [psi]: half a sine wave, every 23 s."""
+    since = (s.time + uniform(s.seed, PHASE, 1) * _SURGE_PERIOD_S) % _SURGE_PERIOD_S
+    return float(q.pressure_surge * math.sin(math.pi * since / _SURGE_S)) if since < _SURGE_S else 0.0
 
 
 @compiled
 def pressure(q: Any, s: Any, u: float, h: float) -> float:
     """The pressure at the end of a step of `h` seconds [psi]; exact for a set point that is constant over it."""
     before = s.pressure
+    if q.pressure_surge > 0.0:
+        u += _surge(q, s)
     p = u + (before - u) * math.exp(-h / _time_constant(q, s, u))
     if q.ep_rate_limit > 0.0:
         reach = h / q.ep_rate_limit
         p = min(p, before + reach)
         if q.ep_rate_limit_form == 0:
             p = max(p, before - reach)
-    if q.relief_valve > 0.0:
-        p = _relieved(q, s, p, h)
     if q.supply_saturation > 0.0:
-        p = min(p, max(_ceiling(q, s, p - before, h), 0.0))
+        p = _capped(q, s, p, h)
     return float(max(p, 0.0))

@@ -23,7 +23,7 @@ IMPERFECTIONS = (
         "stale_samples",
         "sensor",
         "s",
-        (0.25, 0.5, 1.5),
+        (0.15, 0.45, 1.5),
         "The DAQ has a new position only every `size`, evenly or with 40 % jitter; in between it repeats the last.",
         forms=("even", "jitter"),
         limit=30.0,

@@ -102,5 +102,4 @@ def start_state(seed: int) -> NDArray[np.void]:
     for tick in ("wander_tick", "drift_tick", "walk_tick", "colour_tick"):
         state[tick] = -1
     state["supply"] = 20.0
-    state["reservoir"] = 20.0
     return state
