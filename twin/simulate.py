@@ -62,29 +62,41 @@ def simulate_recording(
 def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     """The state before the first row as far as the recording tells.
 
-    At rest the play output equals the position. Where the valve was moving it does not: then the play output that
-    explains the first readings best is taken, if it explains them clearly better.
+    At rest the stem stands at the median of the first readings and the play output with it. Where the valve was moving
+    neither holds: then the first reading or a line through the first ones, with the play output that explains the
+    first seconds best, is taken if it explains them clearly better.
     """
-    pressure = _first(recording.pressure, float(recording.command[0]))
+    pressure = _seen(recording.pressure, float(recording.command[0]))[0]
     middle = plant.design.compliance * (pressure - plant.design.offset)
-    reading = _first(recording.position, float(np.clip(middle, 0.0, plant.design.travel)))
-    position = _stem(plant, reading)
-    rest = Start(pressure, position, position)
+    readings = _seen(recording.position, float(np.clip(middle, 0.0, plant.design.travel)))[:_FIRST_ROWS]
+    position = _stem(plant, float(np.median(readings)))
+    rest = Start(float(pressure), position, position)
     if not np.isfinite(recording.position).any():
         return rest
-    candidates = [Start(pressure, position, w) for w in np.linspace(0.0, plant.design.travel, 33).tolist()]
+    stems = [position, _stem(plant, float(readings[0])), _stem(plant, _before(recording))]
+    plays = np.linspace(0.0, plant.design.travel, 33).tolist()
+    candidates = [rest, *(Start(float(pressure), x, w) for x in stems for w in (x, *plays))]
     stop = int(np.searchsorted(recording.time_s, recording.time_s[0] + 2.0 * plant.design.tau_s)) + 2
     head, cut = recording.slice(0, stop), TimeGrid(grid.time_s[:stop], grid.offsets[:stop])
-    misses = [_miss(plant, head, cut, one) for one in (rest, *candidates)]
+    misses = [_miss(plant, head, cut, one) for one in candidates]
     best = int(np.argmin(misses))
-    return (rest, *candidates)[best] if misses[best] < _BETTER * misses[0] else rest
+    return candidates[best] if misses[best] < _BETTER * misses[0] else rest
 
 
-def _first(values: FloatArray | None, otherwise: float) -> float:
-    """Median of the first readings that there are; one false reading must not decide the start."""
+def _seen(values: FloatArray | None, otherwise: float) -> FloatArray:
+    """The readings that there are, or one value instead."""
     if values is None or not np.isfinite(values).any():
-        return otherwise
-    return float(np.median(values[np.isfinite(values)][:_FIRST_ROWS]))
+        return np.array([otherwise])
+    return values[np.isfinite(values)]
+
+
+def _before(recording: Recording) -> float:
+    """The first rows' line at the first row: median slope of all pairs (Theil 1950), so that a false one is harmless."""
+    rows = np.flatnonzero(np.isfinite(recording.position))[: 2 * _FIRST_ROWS]
+    t, y = recording.time_s[rows] - recording.time_s[0], recording.position[rows]
+    later, sooner = np.triu_indices(rows.size, 1)[::-1]
+    slope = np.median((y[later] - y[sooner]) / (t[later] - t[sooner])) if rows.size > 1 else 0.0
+    return float(np.median(y - slope * t))
 
 
 def _stem(plant: Plant, reading: float) -> float:

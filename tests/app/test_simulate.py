@@ -1,0 +1,58 @@
+"""`lostmotion simulate` from file to file."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import run
+from control.design import DesignModel, save_design
+
+HEADER = "time_s,command_psi,position_in,target_in"
+
+
+def write_inputs(folder: Path, effects: dict[str, dict[str, float | str]] | None = None) -> tuple[str, str, str]:
+    """A model, a record of a resting valve that is told to close, and where the answer goes."""
+    save_design(DesignModel(effects=effects or {}), folder / "model.toml")
+    time_s = np.arange(200) * 0.1
+    command = np.where(time_s > 1.0, 11.0, 5.0)
+    rows = np.c_[time_s, command, np.zeros(200), np.full(200, 0.3)]
+    np.savetxt(folder / "run.csv", rows, delimiter=",", header=HEADER, comments="")
+    return str(folder / "model.toml"), str(folder / "run.csv"), str(folder / "out.csv")
+
+
+def test_same_columns_out(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, record, out = write_inputs(tmp_path)
+    assert run(["simulate", model, record, "--out", out]) == 0
+    lines = Path(out).read_text().splitlines()
+    assert lines[0] == "time_s,command_psi,pressure_psi,position_in,target_in"
+    values = np.array([[float(cell) for cell in line.split(",")] for line in lines[1:]])
+    assert values.shape == (200, 5)
+    assert values[-1, 2] == pytest.approx(11.0)
+    assert values[-1, 3] > 0.3  # the record says it did not move, the model says it did
+    assert "RMS between model and record: position" in capsys.readouterr().out
+
+
+def test_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, record, out = write_inputs(tmp_path, {"stiction": {"form": "one_jump", "breakaway": 9.0}})
+    assert run(["simulate", model, record, "--out", out, "--json"]) == 0
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["position_rms"] == pytest.approx(0.0, abs=1e-12)  # it sticks, as recorded
+    assert answer["pressure_rms"] is None
+    assert answer["rows"] == 200
+
+
+def test_bad_model_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, record, out = write_inputs(tmp_path, {"gremlins": {"size": 1.0}})
+    assert run(["simulate", model, record, "--out", out]) == 2
+    assert "model.toml: [effects.gremlins]" in capsys.readouterr().err
+    assert not Path(out).exists()
+
+
+def test_unwritable_target(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, record, _ = write_inputs(tmp_path)
+    assert run(["simulate", model, record, "--out", str(tmp_path / "no" / "out.csv")]) == 2
+    assert "cannot be written" in capsys.readouterr().err
