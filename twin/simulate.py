@@ -91,7 +91,7 @@ def _seen(values: FloatArray | None, otherwise: float) -> FloatArray:
 
 
 def _before(recording: Recording) -> float:
-    """The first rows' line at the first row: median slope of all pairs (Theil 1950), so that a false one is harmless."""
+    """A line through the first rows at the first: median slope of all pairs (Theil 1950); a false row is harmless."""
     rows = np.flatnonzero(np.isfinite(recording.position))[: 2 * _FIRST_ROWS]
     t, y = recording.time_s[rows] - recording.time_s[0], recording.position[rows]
     later, sooner = np.triu_indices(rows.size, 1)[::-1]
@@ -111,8 +111,10 @@ def _stem(plant: Plant, reading: float) -> float:
 
 
 def _miss(plant: Plant, head: Recording, grid: TimeGrid, start: Start) -> float:
+    """Mean squared difference over the head, without its worst tenth, which may be false readings."""
     c = plant.coefficients(head.duration_s)
     pressure = pressure_response(c, grid, head.command, start.pressure)
     reading = reading_response(c, grid, stem_response(c, grid, pressure, start.position, start.play))
     seen = np.isfinite(head.position)
-    return float(np.mean((head.position[seen] - reading[seen]) ** 2)) if seen.any() else 0.0
+    squares = np.sort((head.position[seen] - reading[seen]) ** 2)[: max(1, int(0.9 * np.count_nonzero(seen)))]
+    return float(np.mean(squares)) if squares.size else 0.0
