@@ -116,12 +116,12 @@ def main() -> None:
     asked = parser.parse_args()
     chance = random.Random(asked.seed)
     deaths: list[Death] = []
-    with tempfile.TemporaryDirectory() as scratch:
-        with VirtualDevice(load_profile("virtual"), make_physics("thesis", asked.seed), RealClock()) as device:
-            for number in range(asked.times):
-                ask_device(device.port, clear=number > 0)
-                deaths.append(one_death(device, Path(scratch) / f"run{number}", chance.uniform(0.3, 2.5)))
-                print(f"{number + 1:3d}  {deaths[-1]}", flush=True)
+    plant = make_physics("thesis", asked.seed)
+    with tempfile.TemporaryDirectory() as scratch, VirtualDevice(load_profile("virtual"), plant, RealClock()) as device:
+        for number in range(asked.times):
+            ask_device(device.port, clear=number > 0)
+            deaths.append(one_death(device, Path(scratch) / f"run{number}", chance.uniform(0.3, 2.5)))
+            print(f"{number + 1:3d}  {deaths[-1]}", flush=True)
     report(deaths)
 
 

@@ -49,7 +49,7 @@ class Server:
     def __init__(
         self, registers: Registers, diagnostics: Diagnostics, identity: Identity, *, max_read: int = _MOST_READ
     ) -> None:
-        self._registers = registers
+        self.registers = registers
         self._diagnostics = diagnostics
         self._identity = identity
         self._max_read = max_read
@@ -82,7 +82,7 @@ class Server:
             return bytes((pdu[0] | 0x80, ILLEGAL_VALUE))
 
     def _values(self, table: int, address: int, count: int) -> bytes:
-        words = self._registers.read(table, address, count)
+        words = self.registers.read(table, address, count)
         return struct.pack(f">B{count}H", 2 * count, *words)
 
     def _read(self, pdu: bytes) -> bytes:
@@ -93,7 +93,7 @@ class Server:
     def _read_coils(self, pdu: bytes) -> bytes:
         address, count = struct.unpack(">HH", pdu[1:])
         _require(1 <= count <= _MOST_COILS_READ, ILLEGAL_VALUE)
-        states = self._registers.read(COIL, address, count)
+        states = self.registers.read(COIL, address, count)
         size = (count + 7) // 8
         packed = sum((state & 1) << index for index, state in enumerate(states))
         return bytes((pdu[0], size)) + packed.to_bytes(size, "little")
@@ -112,8 +112,8 @@ class Server:
         return pdu[:5]
 
     def _store(self, table: int, address: int, values: Sequence[int]) -> None:
-        self._registers.check_write(table, address, values)
-        self._registers.write(table, address, values)
+        self.registers.check_write(table, address, values)
+        self.registers.write(table, address, values)
 
     def _write_one(self, pdu: bytes) -> bytes:
         address, value = struct.unpack(">HH", pdu[1:])
@@ -128,7 +128,7 @@ class Server:
 
     def _mask(self, pdu: bytes) -> bytes:
         address, keep, change = struct.unpack(">HHH", pdu[1:])
-        (current,) = self._registers.read(HOLDING, address, 1)
+        (current,) = self.registers.read(HOLDING, address, 1)
         value = (current & keep) | (change & ~keep & 0xFFFF)
         self._store(HOLDING, address, (value,))
         return pdu
@@ -139,9 +139,9 @@ class Server:
         _require(size == 2 * count == len(pdu) - 10, ILLEGAL_VALUE)
         values = struct.unpack(f">{count}H", pdu[10:])
         # Both halves are checked before the write: a refused transaction must not have moved the valve.
-        self._registers.check_write(HOLDING, address, values)
-        self._registers.check_read(HOLDING, read_at, read_count)
-        self._registers.write(HOLDING, address, values)
+        self.registers.check_write(HOLDING, address, values)
+        self.registers.check_read(HOLDING, read_at, read_count)
+        self.registers.write(HOLDING, address, values)
         return pdu[:1] + self._values(HOLDING, read_at, read_count)
 
     def _diagnose(self, pdu: bytes) -> bytes:
