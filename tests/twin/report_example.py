@@ -8,7 +8,6 @@ from logs.recording import DataNote
 from tests.twin.toy_valve import TRAVEL, Toy, staircase
 from twin.closure import gap
 from twin.diagnosis import (
-    Bin,
     Cause,
     Diagnosis,
     EffectTest,
@@ -71,8 +70,8 @@ def diagnosis(shown: Series) -> Diagnosis:
     where = where_map(pieces, noise, TRAVEL)
     return Diagnosis(
         verdict="effects",
-        statement="The stem sticks: it needs 0.35 psi more to break away than to slide, and the deadband is 0.62 psi wider "
-        "than the design says. With both, the model predicts held-out data to within the noise.",
+        statement="The stem sticks: it needs 0.35 psi more to break away than to slide, and the deadband is 0.62 psi "
+        "wider than the design says. With both, the model predicts held-out data to within the noise.",
         causes=(
             Cause("stiction", "actuator", 0.96, 3.4, {"breakaway": Estimate(0.35, (0.33, 0.37), "psi")}),
             Cause("parameter:deadband", "actuator", 0.91, 4.1, {"deadband": Estimate(3.58, (3.55, 3.61), "psi")}),
@@ -115,6 +114,3 @@ def diagnosis(shown: Series) -> Diagnosis:
         closed_loop={"limit cycle": {"predicted": 0.8, "recorded": 0.9}},
         version="0.1.0",
     )
-
-
-BINS = (Bin(0.0, 0.5, Share(0.4, (0.3, 0.5))), Bin(0.5, 1.0, Share(0.6, (0.5, 0.7))))

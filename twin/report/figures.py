@@ -25,11 +25,11 @@ def over_time(series: Series, floor_percent: float) -> Figure:
     time = series.run_time_s
     for axes in (top, bottom):
         _shade_heldout(axes, series, time)
-    position = series.percent(series.position)
-    _line(top, time, position, MEASURED, "measured", 1.6, 0.55)
-    _line(top, time, series.percent(series.before), BEFORE, "design model", 1.0)
-    _line(top, time, series.percent(series.after), AFTER, "updated model", 1.0)
-    _residuals(bottom, series, time, floor_percent)
+    broken = np.where(series.starts, np.nan, time)
+    _line(top, broken, series.percent(series.position), MEASURED, "measured", 2.6, 0.35)
+    _line(top, broken, series.percent(series.before), BEFORE, "design model", 1.0)
+    _line(top, broken, series.percent(series.after), AFTER, "updated model", 1.0)
+    _residuals(bottom, series, broken, floor_percent)
     tidy(top, "", "position [% of travel]")
     tidy(bottom, "run time [s]", "reading - model")
     _legend(top)
@@ -48,7 +48,7 @@ def close_up(series: Series, floor_percent: float, seconds: float = 90.0) -> Fig
     drive.step(time, series.command[rows], where="pre", color=MUTED, linewidth=1.1, label="command")
     if series.pressure is not None:
         _line(drive, time, series.pressure[rows], INK, "pressure", 0.9)
-    _line(top, time, series.percent(series.position)[rows], MEASURED, "measured", 2.2, 0.5)
+    _line(top, time, series.percent(series.position)[rows], MEASURED, "measured", 3.4, 0.33)
     _line(top, time, series.percent(series.before)[rows], BEFORE, "design model", 1.4)
     if series.retuned is not None:
         _line(top, time, series.percent(series.retuned)[rows], RETUNED, "re-tuned design", 1.1, dashed=True)
@@ -70,40 +70,44 @@ def planes(series: Series) -> Figure:
     both = figure.subplots(1, 2, sharex=True, sharey=True)
     driver = series.command if series.pressure is None else series.pressure
     name = "command" if series.pressure is None else "pressure"
-    measured = np.where(series.starts, np.nan, series.percent(series.position))
+    driver = np.where(series.starts, np.nan, driver)
+    measured = series.percent(series.position)
     for axes, model, colour, label in (
         (both[0], series.before, BEFORE, "design model"),
         (both[1], series.after, AFTER, "updated model"),
     ):
-        _path(axes, driver, measured, MEASURED, "measured", 0.9, 0.45)
-        _path(axes, driver, np.where(series.starts, np.nan, series.percent(model)), colour, label, 0.9, 0.9)
+        _path(axes, driver, measured, MEASURED, "measured", 2.4, 0.33)
+        _path(axes, driver, series.percent(model), colour, label, 0.9, 0.9)
         tidy(axes, f"{name} [{series.pressure_unit}]", "position [% of travel]" if axes is both[0] else "")
         _legend(axes)
     return figure
 
 
-@drawn("Distribution and spectrum of the residuals before and after")
+@drawn("How often the residual exceeds a size, and its spectrum, before and after")
 def residual_shape(series: Series, floor_percent: float) -> Figure:
-    """Distribution and spectrum of the residuals before and after, on held-out rows, against the floor."""
+    """Share of time above a size, and spectrum of the residual before and after, on held-out rows, with the floor."""
     figure = new_figure(10.6, 2.9)
     left, right = figure.subplots(1, 2)
     rows = series.heldout if series.heldout.any() else np.ones_like(series.heldout)
-    pairs = [(series.before, BEFORE, "design model"), (series.after, AFTER, "updated model")]
-    residuals = [(series.percent(series.position - model), colour, name) for model, colour, name in pairs]
-    known = np.concatenate([r[rows & np.isfinite(r)] for r, _, _ in residuals])
-    reach = float(np.quantile(np.abs(known), 0.998)) if known.size else 1.0
-    edges = np.linspace(-reach, reach, 90)
-    for residual, colour, name in residuals:
-        left.hist(residual[rows], bins=edges, density=True, histtype="step", color=colour, linewidth=1.3, label=name)
+    for model, colour, name in ((series.before, BEFORE, "design model"), (series.after, AFTER, "updated model")):
+        residual = series.percent(series.position - model)
+        size = np.sort(np.abs(residual[rows & np.isfinite(residual)]))
+        share = 100.0 * (1.0 - np.arange(size.size) / max(size.size, 1))
+        shown = np.unique(np.linspace(0, max(size.size - 1, 0), 400).astype(np.int64))
+        left.plot(size[shown], share[shown], color=colour, linewidth=1.4, label=name)
         frequency, power = _spectrum(residual, series)
         right.loglog(frequency[1:], power[1:], color=colour, linewidth=1.2, label=name)
     if floor_percent > 0:
-        bell = np.exp(-0.5 * (edges / floor_percent) ** 2) / (floor_percent * np.sqrt(2 * np.pi))
-        left.fill_between(edges, bell, color=FLOOR, alpha=0.7, linewidth=0, label="noise floor")
-    left.set_yscale("log")
-    left.set_ylim(bottom=1e-3)
-    tidy(left, "residual [% of travel]", "density")
+        from scipy.special import erfc
+
+        size = np.geomspace(0.02 * floor_percent, 5.0 * floor_percent, 200)
+        share = 100.0 * erfc(size / floor_percent / np.sqrt(2.0))
+        left.fill_between(size, share, color=FLOOR, alpha=0.7, linewidth=0, label="noise floor")
+        left.set_xlim(left=0.1 * floor_percent)
+    left.set_xscale("log")
+    tidy(left, "size of the residual [% of travel]", "time above it [%]")
     tidy(right, "frequency [Hz]", "power density [%²/Hz]")
+    right.minorticks_off()
     _legend(left)
     return figure
 
@@ -134,14 +138,14 @@ def _line(
     alpha: float = 1.0,
     dashed: bool = False,
 ) -> None:
-    rows = thin(y, _POINTS)
+    rows = np.union1d(thin(y, _POINTS), np.flatnonzero(np.isnan(x))[:_POINTS])
     style = (0, (4, 2)) if dashed else "-"
     axes.plot(x[rows], y[rows], color=colour, label=label or None, linewidth=width, alpha=alpha, linestyle=style)
 
 
 def _path(axes: Axes, x: FloatArray, y: FloatArray, colour: str, label: str, width: float, alpha: float) -> None:
     """A line in the plane, thinned along both coordinates."""
-    rows = np.union1d(thin(x, 2 * _POINTS), thin(y, 2 * _POINTS))
+    rows = np.union1d(np.union1d(thin(x, 2 * _POINTS), thin(y, 2 * _POINTS)), np.flatnonzero(np.isnan(x))[:_POINTS])
     axes.plot(x[rows], y[rows], color=colour, label=label, linewidth=width, alpha=alpha)
 
 

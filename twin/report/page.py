@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.diagnosis import Diagnosis
+from twin.diagnosis import Diagnosis, Where
 from twin.report.content import (
     cause_rows,
     columns,
@@ -61,6 +61,7 @@ def _where(diagnosis: Diagnosis, series: Series) -> dict[str, object]:
     where = diagnosis.where
     minutes = where.time is not None and where.time[-1].high > 600.0
     return {
+        "chain": _chain(where),
         "stage": share_bars(where.stage),
         "attributed": share_bars(where.attributed),
         "direction": share_bars(where.direction),
@@ -71,6 +72,17 @@ def _where(diagnosis: Diagnosis, series: Series) -> dict[str, object]:
             ("run time", "min" if minutes else "s", columns(where.time, 1.0 / 60.0 if minutes else 1.0)),
             ("frequency", "Hz", columns(where.frequency)),
         ],
+    }
+
+
+def _chain(where: Where) -> dict[str, str]:
+    """What each box of the chain says about its share of the gap."""
+    shares = where.attributed or where.stage or {}
+    joint = shares.get("actuator_or_sensor")
+    together = f"{percent(joint.value)} with its neighbour" if joint else "share not known"
+    return {
+        key: f"{percent(shares[key].value)} of the gap" if key in shares else together
+        for key in ("ep", "actuator", "sensor")
     }
 
 

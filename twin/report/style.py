@@ -88,6 +88,9 @@ def _inline(text: str, label: str) -> str:
     head, rest = text.split(">", 1)
     head = re.sub(r' (width|height)="[^"]*"', "", head)
     rest = re.sub(r"<metadata>.*?</metadata>", "", rest, flags=re.S)
-    # the page's own font: matplotlib only names the one it measured with
+    # the page's own font instead of the one that measured; no names that two figures would share; hundredths of a point
+    rest = re.sub(r"font-family: [^;\"]*;? ?", "", rest)
     rest = re.sub(r"font: ([\d.]+px) [^;\"]*", r"font-size: \1", rest)
+    rest = re.sub(r'<g id="[^"]*"', "<g", rest)
+    rest = re.sub(r"(\d\.\d\d)\d+", r"\1", rest)
     return f'{head} role="img" aria-label="{label}">{rest.rstrip()}'

@@ -25,7 +25,7 @@ _NAMES = {
     "parameter:ep_tau": "design number: E/P time constant",
     "high_frequency": "fast changes",
     "repeats": "repeated commands",
-    "still": "still stretches",
+    "still": "still",
 }
 
 
@@ -49,14 +49,15 @@ def number(value: object, digits: int = 3) -> str:
 
 
 def percent(value: float, digits: int = 0) -> str:
-    """A share in percent; what rounds to certainty without being it says so."""
+    """A share in percent; what rounds to certainty or to nothing without being it says so."""
     if not isfinite(value):
         return "-"
-    if digits == 0 and 0.995 <= value < 1.0:
-        return "> 99 %"
-    if digits == 0 and 0.0 < value < 0.005:
-        return "< 1 %"
-    return f"{100 * value:.{digits}f} %"
+    least = 0.5 * 10.0 ** (-2 - digits)
+    if 1.0 - least <= value < 1.0:
+        return f"> {100 - 10.0**-digits:.{digits}f} %"
+    if 0.0 < value < least:
+        return f"< {10.0**-digits:.{digits}f} %"
+    return f"{100 * value:.{digits}f} %".replace("-0 %", "0 %")
 
 
 def interval(ci95: tuple[float, float], digits: int = 3) -> str:

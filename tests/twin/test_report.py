@@ -1,0 +1,145 @@
+"""The report: self-contained, complete, the same twice, and whole for every kind of verdict."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tests.twin.report_example import diagnosis, series
+from twin.diagnosis import Bin, Diagnosis, Gap, Share
+from twin.report.content import columns, gap_marks, share_bars
+from twin.report.page import render, write_report
+from twin.report.series import Series, busiest_window, thin
+from twin.report.words import number, percent
+
+VOID = {"meta", "link", "img", "br", "hr", "input"}
+
+
+class Balance(HTMLParser):
+    """Opening and closing tags in step."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag: str) -> None:
+        assert self.open.pop() == tag
+
+
+@pytest.fixture(scope="module")
+def shown() -> Series:
+    return series(60)
+
+
+@pytest.fixture(scope="module")
+def page(shown: Series) -> str:
+    return render(diagnosis(shown), shown)
+
+
+def test_page_is_whole_and_refers_to_nothing_outside(page: str) -> None:
+    balance = Balance()
+    balance.feed(page)
+    assert balance.open == []
+    links = set(re.findall(r"""(?:https?:)?//[^\s"'<)]+""", page))
+    assert links <= {"http://www.w3.org/2000/svg", "http://www.w3.org/1999/xlink"}
+    assert not re.search(r"<(script|link|img|iframe)\b|@import|url\((?!#)", page)
+    assert len(page) < 1_500_000
+
+
+def test_page_says_everything(page: str) -> None:
+    for words in (
+        "The stem sticks: it needs 0.35 psi more",
+        "actuator or sensor",
+        "0.330 to 0.370",
+        "Karnopp",
+        "this data cannot tell apart: stiction, distributed hysteresis",
+        "lostmotion sweep next.toml",
+        "the command never came near the supply pressure",
+        "duplicate time in run 0041",
+        "run 0042 ramp",
+        "second position signal",
+    ):
+        assert words in page
+    assert page.count("<svg") == 4
+    assert "nan" not in re.sub(r"<style>.*?</style>", "", page, flags=re.S).lower().replace("nanos", "")
+
+
+def test_same_input_same_bytes(shown: Series, page: str, tmp_path: Path) -> None:
+    path = tmp_path / "report.html"
+    write_report(diagnosis(shown), shown, path)
+    assert path.read_text(encoding="utf-8") == page
+
+
+def test_no_gap_page_on_few_bare_rows() -> None:
+    bare = Diagnosis("no_gap", "No gap <b>larger</b> than 0.1 %.", (), (), Gap(0.15, 0.15, 0.15, 0.14, None))
+    n = 40
+    zeros = np.zeros(n)
+    small = Series(np.arange(n) * 1.0, zeros, zeros, zeros, zeros, np.zeros(n, dtype=bool), 0.5625)
+    page = render(bare, small)
+    assert "No gap &lt;b&gt;larger&lt;/b&gt;" in page
+    assert "nothing to close" in page
+    assert "there is nothing to locate" in page
+    assert "No cause is needed" in page
+
+
+def test_unexplained_without_pressure_and_with_missing_values(shown: Series) -> None:
+    position = shown.position.copy()
+    position[100:140] = np.nan
+    blind = replace(shown, position=position, pressure=None, retuned=None, false=np.arange(position.size) % 97 == 0)
+    known = diagnosis(shown)
+    where = replace(known.where, stage=None, attributed=None)
+    signature = {"depends on": "time since reversal", "correlation": {"position": 0.1}}
+    unclear = replace(known, verdict="unexplained", causes=(), where=where, residual_signature=signature)
+    page = render(unclear, blind)
+    assert "without measured pressure the stages cannot be told apart" in page
+    assert "time since reversal" in page
+    assert "command [psi]" in page
+
+
+def test_bars_show_masking_and_columns_their_scale() -> None:
+    bars = share_bars({"ep": Share(-0.5, (-0.6, -0.4)), "actuator_or_sensor": Share(1.5, (1.4, 1.6))})
+    assert [bar.tone for bar in bars] == ["minus", "plus"]
+    assert "masks" in bars[0].detail
+    assert bars[0].left + bars[0].width == pytest.approx(bars[0].zero)
+    assert max(bar.high for bar in bars) == pytest.approx(100.0)
+    assert share_bars(None) == []
+    shown = columns((Bin(0.0, 0.5, Share(0.4, (0.3, 0.5))), Bin(0.5, 1.0, Share(0.6, (0.5, 0.8)))), 100.0)
+    assert shown[1].label == "50"
+    assert shown[1].height == pytest.approx(75.0)
+    assert columns(None) == []
+    marks = gap_marks(Gap(4.0, 3.0, 0.2, 0.1, None))
+    assert [mark.place for mark in marks] == sorted(mark.place for mark in marks)
+
+
+def test_thinning_keeps_extremes_and_windows_stay_in_one_record(shown: Series) -> None:
+    values = np.sin(np.arange(100_000) / 50.0)
+    values[54_321] = 7.0
+    rows = thin(values, 2000)
+    assert rows.size <= 2000
+    assert 54_321 in rows
+    assert rows[0] == 0
+    assert rows[-1] == values.size - 1
+    window = busiest_window(shown, 400)
+    assert shown.record is not None
+    assert np.unique(shown.record[window]).size == 1
+    assert np.all(np.diff(shown.run_time_s) > 0)
+
+
+def test_words() -> None:
+    assert percent(0.9999, 1) == "> 99.9 %"
+    assert percent(0.0001) == "< 1 %"
+    assert percent(1.0) == "100 %"
+    assert percent(float("nan")) == "-"
+    assert number(0.0008) == "0.000800"
+    assert number(1.23e-7) == "1.23e-07"
+    assert number(None) == "-"
+    assert number(12345.6) == "12346"
