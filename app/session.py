@@ -102,6 +102,7 @@ def open_bench(
     """
     from hal.clock import RealClock
     from hal.errors import BadInput
+    from hal.latch import Latch
     from hal.modbus_bench import ModbusBench
     from hal.profile import Profile, load_profile
     from hal.safety import SafeBench
@@ -113,7 +114,11 @@ def open_bench(
                 "--physics, --effect and --real-time belong to the virtual valve; leave them out with --port"
             )
         clock: Clock = RealClock()
-        with SafeBench(ModbusBench(found, port, clock, acknowledge=acknowledge), found.limits, clock) as bench:
+        latch = Latch.of_port(port)
+        if acknowledge:
+            latch.acknowledge()
+        inner = ModbusBench(found, port, clock, acknowledge=acknowledge)
+        with SafeBench(inner, found.limits, clock, latch=latch) as bench:
             yield Session(bench, clock, found, {})
         return
     plant_options = dict(options or {})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from urllib.parse import urlsplit
 
 from hal.errors import BadInput
@@ -36,3 +37,19 @@ def parse_port(text: str) -> PortName:
     if not parts.hostname or not 1 <= number <= 65535 or parts.path.strip("/"):
         raise BadInput(f"port '{text}' must look like {parts.scheme}://HOST:PORT")
     return PortName(parts.scheme, text, parts.hostname, number)
+
+
+def list_serial_ports() -> list[dict[str, str]]:
+    """The serial ports of this machine as plain values: `port`, `description`, `serial_number`, `by_id`."""
+    from serial.tools.list_ports import comports
+
+    stable = {str(link.resolve()): str(link) for link in sorted(Path("/dev/serial/by-id").glob("*"))}
+    return [
+        {
+            "port": port.device,
+            "description": port.description if port.description not in (None, "n/a") else "serial port",
+            "serial_number": port.serial_number or "",
+            "by_id": stable.get(port.device, ""),
+        }
+        for port in sorted(comports(), key=lambda port: port.device)
+    ]

@@ -98,6 +98,8 @@ class SafeBench:
         """Sends what the limits leave of the command and judges what comes back."""
         if self._trip is not None:
             raise SafetyTrip(self._trip)
+        if self._latch is not None and self._latch.path.exists():  # `lostmotion vent --emergency` elsewhere
+            self._trip_now(f"emergency stop ({self._latch.engaged()})")
         if not math.isfinite(command_psi):
             self._trip_now(f"command {command_psi} is not a number; whatever made it is at fault")
         allowed, now_s = self._allowed(command_psi), self._clock.now_s()

@@ -8,6 +8,7 @@ import math
 import os
 import select
 import socket
+import termios
 from typing import Protocol
 
 from hal.errors import PortFault
@@ -88,6 +89,9 @@ class SerialTransport(FdTransport):
         s = self._settings
         try:
             port = serial.Serial(self.name, s.baud, parity=s.parity, stopbits=s.stop_bits, timeout=0, exclusive=True)
+        except termios.error as error:
+            line = f"{s.baud} 8{s.parity}{s.stop_bits}"
+            raise PortFault(f"port {self.name} cannot be set to {line}; its driver refuses that") from error
         except (serial.SerialException, OSError, ValueError) as error:
             raise PortFault(_why_not(self.name, error)) from error
         with contextlib.suppress(AttributeError, ValueError, OSError):  # not every adapter has such a mode

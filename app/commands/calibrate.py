@@ -1,0 +1,111 @@
+"""Make the LVDT's calibration from dial-gauge readings."""
+
+from __future__ import annotations
+
+import json
+from datetime import datetime
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from hal.dial_gauge import Fit
+
+
+@click.command()
+@click.argument("readings", type=click.Path(path_type=Path), required=False, metavar="[READINGS.csv]")
+@click.option("--profile", metavar="FILE|NAME", default="virtual", show_default=True, help="Profile to start from.")
+@click.option("--port", metavar="PORT", help="Read the signal from the bench, and type what the gauge shows.")
+@click.option("--out", type=click.Path(path_type=Path, dir_okay=False), metavar="FILE.toml", help="New profile.")
+@click.option("--kind", type=click.Choice(["two-point", "table"]), default="table", show_default=True,
+              help="A straight line, or a table through all positions.")  # fmt: skip
+@click.option("--id", "name", help="Name of the calibration.  [default: today's date]")
+@click.option("--expires", type=click.DateTime(["%Y-%m-%d"]), help="Last day on which it counts.")
+@click.option("--instrument", default="dial gauge", show_default=True, help="What it was compared with.")
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def command(
+    readings: Path | None,
+    profile: str,
+    port: str | None,
+    out: Path | None,
+    kind: str,
+    name: str | None,
+    expires: datetime | None,
+    instrument: str,
+    as_json: bool,
+) -> None:
+    """Make the LVDT's calibration from dial-gauge readings, and put it into a copy of the profile.
+
+    READINGS.csv has the columns `signal` (in the unit of the profile's position register) and `position_in`. Without
+    it, the bench at --port is read: type the gauge's position, one a line, and an empty line at the end. The valve is
+    not commanded; move it by other means (`lostmotion set` in another terminal cannot share the port).
+    """
+    from hal.clock import utc_now
+    from hal.dial_gauge import fit, read_pairs, write_profile
+    from hal.errors import BadInput
+    from hal.profile import FOLDER, load_profile
+
+    load_profile(profile)
+    if (readings is None) == (port is None):
+        raise BadInput("give either READINGS.csv or --port")
+    today = utc_now().date()
+    found = fit(
+        read_pairs(readings) if readings is not None else _ask(profile, str(port)),
+        "two-point" if kind == "two-point" else "table",
+        name=name or f"{kind}-{today}",
+        made=today,
+        expires=None if expires is None else expires.date(),
+        instrument=instrument,
+    )
+    source = FOLDER / f"{profile}.toml" if (FOLDER / f"{profile}.toml").is_file() else Path(profile)
+    if out is not None:
+        write_profile(source, out, found.calibration)
+    _show(found, out, as_json)
+
+
+def _ask(profile: str, port: str) -> list[tuple[float, float]]:
+    """Pairs typed by the operator, the signal averaged over ten readings of the bench."""
+    from app.watch import open_to_look
+    from hal.assemble import NO_VALUE
+
+    pairs: list[tuple[float, float]] = []
+    with open_to_look(port, profile) as (bench, _):
+        while text := click.prompt("gauge position [in], empty to end", default="", show_default=False).strip():
+            try:
+                position = float(text)
+            except ValueError:
+                click.echo(f"'{text}' is not a number", err=True)
+                continue
+            seen = [sample.position for sample in (bench.observe() for _ in range(10))]
+            values = [bench.profile.position_signal(r.value) for r in seen if not r.quality & NO_VALUE]
+            if not values:
+                click.echo("the bench gave no reading; try again", err=True)
+                continue
+            pairs.append((sum(values) / len(values), position))
+            click.echo(f"  signal {pairs[-1][0]:.5f} at {position:g} in")
+    return pairs
+
+
+def _show(found: Fit, out: Path | None, as_json: bool) -> None:
+    points = [list(point) for point in found.calibration.points]
+    if as_json:
+        result = {
+            "id": found.calibration.id,
+            "points": points,
+            "residuals_in": list(found.residuals_in),
+            "worst_in": found.worst_in,
+            "rms_in": found.rms_in,
+            "profile": None if out is None else str(out),
+        }
+        click.echo(json.dumps(result))
+        return
+    click.echo(f"calibration '{found.calibration.id}', {len(points)} points from {len(found.pairs)} readings")
+    click.echo(f"{'signal':>12}  {'position in':>11}  {'residual in':>11}")
+    for (signal, position), residual in zip(found.pairs, found.residuals_in, strict=True):
+        click.echo(f"{signal:12.5f}  {position:11.4f}  {residual:+11.5f}")
+    click.echo(f"worst residual {found.worst_in:.5f} in, rms {found.rms_in:.5f} in")
+    if out is None:
+        click.echo("nothing was written; --out FILE.toml makes a profile with it")
+    else:
+        click.echo(f"wrote {out}; use it with --profile {out}")

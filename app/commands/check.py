@@ -1,0 +1,56 @@
+"""Look at a bench without moving anything: identity, readings, line, calibration, safe state."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from app.session import bench_options
+
+
+@click.command()
+@bench_options
+@click.option("--period", "period_s", type=click.FloatRange(min=0.0001), metavar="S",
+              help="A tick [s] that the line has to carry.")  # fmt: skip
+@click.option("--leak", is_flag=True, help="Also pressurise the valve, and look at supply and leaks. This moves it.")
+@click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
+def command(
+    port: str | None,
+    profile: str | None,
+    physics: str | None,
+    seed: int,
+    effects: tuple[str, ...],
+    real_time: bool,
+    period_s: float | None,
+    leak: bool,
+    as_json: bool,
+) -> None:
+    """Look at a bench without moving anything: identity, readings, line, calibration, safe state.
+
+    Nothing is written to the device. With --leak, afterwards, the valve is pressurised to the middle of its range for
+    half a minute, to see whether the supply sags and the pressure holds, and then sent to its safe command.
+    """
+    from app.bench_check import look, pressurise
+    from app.watch import open_to_look
+    from hal.errors import JobFailed
+
+    with open_to_look(port, profile, physics=physics, seed=seed, effects=effects) as (bench, _):
+        findings = look(bench, period_s)
+    if leak:
+        from app.session import open_bench
+
+        if not as_json:
+            click.echo("the valve will now be pressurised for half a minute, then go to its safe command")
+        with open_bench(
+            port, bench.profile, physics=physics, seed=seed, effects=effects, real_time=real_time
+        ) as session:
+            findings += pressurise(session)
+    if as_json:
+        click.echo(json.dumps({f.name: {"ok": f.ok, "text": f.text, **f.numbers} for f in findings}))
+    else:
+        for finding in findings:
+            click.echo(f"{'ok  ' if finding.ok else 'BAD '} {finding.name:<12} {finding.text}")
+    bad = [finding.name for finding in findings if not finding.ok]
+    if bad:
+        raise JobFailed(f"the bench is not ready: {', '.join(bad)}")

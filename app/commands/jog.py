@@ -1,0 +1,109 @@
+"""Move the valve by hand in small steps."""
+
+from __future__ import annotations
+
+import os
+import select
+import sys
+from collections.abc import Iterator
+
+import click
+
+from app.session import bench_options
+
+
+@click.command(context_settings={"ignore_unknown_options": True})
+@click.argument("steps", nargs=-1, metavar="STEP...")
+@bench_options
+@click.option("--dwell", "dwell_s", type=click.FloatRange(min=0.1), default=3.0, show_default=True, metavar="S",
+              help="Time at each command [s].")  # fmt: skip
+@click.option("--period", "period_s", type=click.FloatRange(min=0.01), default=1.0, show_default=True, metavar="S",
+              help="Time between two readings [s].")  # fmt: skip
+def command(
+    steps: tuple[str, ...],
+    port: str | None,
+    profile: str | None,
+    physics: str | None,
+    seed: int,
+    effects: tuple[str, ...],
+    real_time: bool,
+    dwell_s: float,
+    period_s: float,
+) -> None:
+    """Move the valve by hand: STEPs like +0.5 -1 +0.25 (relative) or =8 (absolute), in psi, or percent.
+
+    Without STEPs they are read from standard input, one a line, until an empty line or `q`. A step that would leave the
+    limits ends at the limit. At the end the valve goes to its safe command.
+    """
+    from app.hold import hold
+    from app.session import open_bench
+    from hal.latch import Latch
+    from hal.profile import load_profile
+
+    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    moves = [_parse(step) for step in steps]
+    limits, unit = found.limits, found.command_unit
+    click.echo(
+        f"the valve will move by your steps, between {limits.command_min:g} and {limits.command_max:g} {unit}, "
+        f"{dwell_s:g} s each, then go to its safe command"
+    )
+    if port is not None:
+        Latch.of_port(port).check()
+    with open_bench(
+        port, found, physics=physics, seed=seed, effects=effects, real_time=real_time or (port is None and not steps)
+    ) as session:
+        at = session.command_in_force
+
+        def commands() -> Iterator[tuple[float, float | None]]:
+            nonlocal at
+            for move in moves or _typed():
+                if move is None:
+                    yield at, 0.0
+                    continue
+                absolute, amount = move
+                at = min(max(amount if absolute else at + amount, limits.command_min), limits.command_max)
+                click.echo(f"-> {at:g} {unit}")
+                yield at, dwell_s
+
+        hold(session, commands(), period_s)
+    click.echo("the valve is at its safe command")
+
+
+def _parse(step: str) -> tuple[bool, float]:
+    """(absolute, amount). Raises: `BadInput`."""
+    from math import isfinite
+
+    from hal.errors import BadInput
+
+    text = step.strip()
+    try:
+        amount = float(text.removeprefix("="))
+    except ValueError:
+        amount = float("nan")
+    if not isfinite(amount):
+        raise BadInput(f"step '{step}' must look like +0.5, -1 or =8")
+    return text.startswith("="), amount
+
+
+def _typed() -> Iterator[tuple[bool, float] | None]:
+    """Steps typed one a line; None while nothing is typed, so that the bench is served and its watchdog content."""
+    from hal.errors import BadInput
+
+    stdin, text = sys.stdin.fileno(), ""
+    while True:
+        line, newline, rest = text.partition("\n")
+        if newline:
+            text = rest
+            if line.strip() in ("", "q", "quit"):
+                return
+            try:
+                yield _parse(line)
+            except BadInput as error:
+                click.echo(str(error), err=True)
+        elif select.select([stdin], [], [], 0.0)[0]:
+            data = os.read(stdin, 4096)
+            if not data:
+                return
+            text += data.decode("utf-8", "replace")
+        else:
+            yield None

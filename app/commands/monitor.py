@@ -1,0 +1,49 @@
+"""Show the readings of a bench until Ctrl-C; nothing is written."""
+
+from __future__ import annotations
+
+import json
+
+import click
+
+from app.session import bench_options
+
+
+@click.command()
+@bench_options
+@click.option("--period", "period_s", type=click.FloatRange(min=0.005), default=0.5, show_default=True, metavar="S",
+              help="Time between two readings [s].")  # fmt: skip
+@click.option("--count", type=click.IntRange(min=1), metavar="N", help="Stop after N readings.")
+@click.option("--json", "as_json", is_flag=True, help="Print one JSON object per reading.")
+def command(
+    port: str | None,
+    profile: str | None,
+    physics: str | None,
+    seed: int,
+    effects: tuple[str, ...],
+    real_time: bool,
+    period_s: float,
+    count: int | None,
+    as_json: bool,
+) -> None:
+    """Show the readings of a bench until Ctrl-C, or --count of them; nothing is written and the valve stays as it is.
+
+    With --count the virtual valve is read in stepped time, without waiting.
+    """
+    from app.readings import header, line, sample_row
+    from app.watch import open_to_look
+    from hal.errors import BadInput
+
+    stepped = count is not None and not real_time
+    with open_to_look(port, profile, physics=physics, seed=seed, effects=effects, stepped=stepped) as (bench, clock):
+        unit, least_s = bench.info.command_unit, bench.info.min_period_s
+        if period_s < least_s:
+            raise BadInput(f"--period {period_s:g} s is shorter than the line can carry; the least is {least_s:.4g} s")
+        if not as_json:
+            click.echo(header(unit))
+        began_s, tick = clock.now_s(), 0
+        while count is None or tick < count:
+            clock.sleep_until(began_s + tick * period_s)
+            sample = bench.observe()
+            click.echo(json.dumps(sample_row(sample, unit)) if as_json else line(sample, began_s))
+            tick += 1

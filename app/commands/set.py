@@ -1,0 +1,64 @@
+"""Hold the valve at one command and show its readings; or acknowledge an emergency stop."""
+
+from __future__ import annotations
+
+import click
+
+from app.session import bench_options
+
+
+@click.command(name="set")
+@click.argument("value", type=float, required=False)
+@bench_options
+@click.option("--hold", "hold_s", type=click.FloatRange(min=0), metavar="S", help="Stop after S seconds.")
+@click.option("--period", "period_s", type=click.FloatRange(min=0.01), default=0.5, show_default=True, metavar="S",
+              help="Time between two readings [s].")  # fmt: skip
+@click.option("--acknowledge", is_flag=True, help="You have looked at the valve: lift the emergency stop first.")
+def command(
+    value: float | None,
+    port: str | None,
+    profile: str | None,
+    physics: str | None,
+    seed: int,
+    effects: tuple[str, ...],
+    real_time: bool,
+    hold_s: float | None,
+    period_s: float,
+    acknowledge: bool,
+) -> None:
+    """Hold the valve at VALUE (psi, or percent) and show its readings until Ctrl-C or --hold.
+
+    Then the valve goes to its safe command, as after everything that this program does. With --acknowledge and without
+    VALUE only the emergency stop is lifted, and the valve stays at its safe command.
+    """
+    from app.hold import hold
+    from app.session import open_bench
+    from hal.errors import BadInput
+    from hal.latch import Latch
+    from hal.profile import load_profile
+
+    if value is None and not acknowledge:
+        raise BadInput("give the command to hold, for example `lostmotion set 8.5`, or --acknowledge")
+    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    low, high, unit = found.limits.command_min, found.limits.command_max, found.command_unit
+    if value is not None and not low <= value <= high:
+        raise BadInput(f"{value:g} {unit} is outside the limits of profile '{found.name}', {low:g} to {high:g} {unit}")
+    if port is not None and not acknowledge:
+        Latch.of_port(port).check()
+    if value is None:
+        click.echo("lifting the emergency stop; the valve stays at its safe command")
+    else:
+        end = "until Ctrl-C" if hold_s is None else f"for {hold_s:g} s"
+        click.echo(f"the valve will go to {value:g} {unit} and be held there {end}, then go to its safe command")
+    with open_bench(
+        port,
+        found,
+        physics=physics,
+        seed=seed,
+        effects=effects,
+        real_time=real_time or (port is None and hold_s is None),
+        acknowledge=acknowledge,
+    ) as session:
+        if value is not None:
+            hold(session, [(value, hold_s)], period_s)
+    click.echo("the valve is at its safe command")

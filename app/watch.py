@@ -1,0 +1,52 @@
+"""Opening a bench only to look at it: nothing is written, on entering and leaving neither."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hal.clock import Clock
+    from hal.modbus_bench import ModbusBench
+
+
+@contextmanager
+def open_to_look(
+    port: str | None,
+    profile: str | None,
+    *,
+    physics: str | None = None,
+    seed: int = 0,
+    effects: Sequence[str] = (),
+    stepped: bool = False,
+) -> Iterator[tuple[ModbusBench, Clock]]:
+    """The bench of a profile at `port`; without one, a virtual valve, in real time unless `stepped`.
+
+    Raises: `BadInput`, `PortFault`, `WireFault`, `BenchFault`.
+    """
+    from hal.clock import RealClock, SteppedClock
+    from hal.errors import BadInput
+    from hal.modbus_bench import ModbusBench
+    from hal.profile import load_profile
+
+    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    if port is not None:
+        if physics or effects:
+            raise BadInput("--physics and --effect belong to the virtual valve; leave them out with --port")
+        clock: Clock = RealClock()
+        with ModbusBench(found, port, clock, read_only=True) as bench:
+            yield bench, clock
+        return
+    from app.session import _parse_effects as parse_effects
+    from sim_device.physics.catalog import make_physics
+    from sim_device.server import VirtualDevice
+
+    clock = SteppedClock() if stepped else RealClock()
+    options = {"effects": parse_effects(effects)} if effects else {}
+    name = physics or ("positioner" if found.command_unit == "percent" else "thesis")
+    with (
+        VirtualDevice(found, make_physics(name, seed, **options), clock) as device,
+        ModbusBench(found, device.port, clock, pacing="none", read_only=True) as bench,
+    ):
+        yield bench, clock
