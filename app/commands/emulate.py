@@ -6,6 +6,7 @@ import json
 import signal
 import sys
 import threading
+from collections.abc import Mapping
 from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
 @click.option("--refresh", type=click.FloatRange(min=0), default=0.0, show_default=True,
               help="Conversion period of the DAQ [s]; 0 converts for every request.")  # fmt: skip
 @click.option("--seed", type=int, default=0, show_default=True, help="Of the sensor noise and of the faults.")
+@click.option("--sealed", metavar="SEED", help="A valve with something, or nothing, wrong with it: drawn, not told.")
+@click.option("--commitment", type=click.Path(path_type=Path), help="Where to write the hash of what was drawn.")
 @click.option("--json", "as_json", is_flag=True, help="Print where it listens as one line of JSON.")
 def command(
     port_link: Path | None,
@@ -49,6 +52,8 @@ def command(
     pace: int | None,
     refresh: float,
     seed: int,
+    sealed: str | None,
+    commitment: Path | None,
     as_json: bool,
 ) -> None:
     """Run the virtual Modbus device on a pseudo-terminal or a socket, until stopped.
@@ -63,11 +68,15 @@ def command(
     from sim_device.server import VirtualDevice
 
     profile = load_profile(profile_name)
-    physics = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
+    if sealed is None:
+        physics = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
+        valve, said = _valve(physics, effects, seed), {"physics": physics}
+    else:
+        valve, said = _sealed(sealed, commitment, bool(physics or effects))
     stepped = time_kind == "stepped"
     device = VirtualDevice(
         profile,
-        _valve(physics, effects, seed),
+        valve,
         SteppedClock() if stepped else RealClock(),
         link=port_link,
         tcp=tcp,
@@ -75,8 +84,22 @@ def command(
         pace_baud=pace,
         options=Options(refresh_s=refresh, simulation_block=stepped),
     )
-    said: dict[str, object] = {"units": sorted(device.units), "profile": profile_name, "physics": physics}
-    _serve(device, said, as_json)
+    _serve(device, said | {"profile": profile_name, "units": sorted(device.units)}, as_json)
+
+
+def _sealed(seed: str, commitment: Path | None, chosen: bool) -> tuple[ValvePhysics, dict[str, str]]:
+    """The valve, and what may be said about it; the commitment is written before anything listens.
+
+    Raises: `BadInput` when the operator has `chosen` a plant or an effect besides.
+    """
+    from sim_device.sealed import draw, write
+
+    if chosen:
+        raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics and --effect")
+    drawn = draw(seed)
+    if commitment is not None:
+        write(commitment, drawn)
+    return drawn.physics, {"physics": f"{drawn.family}, sealed", "commitment": drawn.commitment}
 
 
 def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
@@ -94,7 +117,7 @@ def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
     return make_physics(physics, seed, **options)
 
 
-def _serve(device: VirtualDevice, said: dict[str, object], as_json: bool) -> None:
+def _serve(device: VirtualDevice, said: Mapping[str, object], as_json: bool) -> None:
     stop = threading.Event()
 
     def end(_number: int, _frame: FrameType | None) -> None:
@@ -111,13 +134,15 @@ def _serve(device: VirtualDevice, said: dict[str, object], as_json: bool) -> Non
             signal.signal(number, handler)
 
 
-def _announce(device: VirtualDevice, said: dict[str, object], as_json: bool) -> None:
+def _announce(device: VirtualDevice, said: Mapping[str, object], as_json: bool) -> None:
     port, url = device.port, device.tcp_url
     if as_json:
-        click.echo(json.dumps({"port": port, "tcp": url or None} | said))
+        click.echo(json.dumps({"port": port, "tcp": url or None, **said}))
     else:
         places = " and ".join(dict.fromkeys(place for place in (port, url) if place))
         units = ", ".join(str(unit) for unit in device.units)
         click.echo(f"virtual valve ({said['physics']}) with profile {said['profile']}, unit {units}, on {places}")
+        if "commitment" in said:
+            click.echo(f"commitment: {said['commitment']}")
         click.echo(f"try: lostmotion check --port {port} --profile {said['profile']}    (Ctrl-C stops it)")
     sys.stdout.flush()

@@ -40,6 +40,11 @@ def make_physics(name: str, seed: int = 0, **options: object) -> ValvePhysics:
         raise BadInput(f"physics '{name}' does not take these options: {error}") from error
 
 
+def parameters(name: str) -> tuple[Imperfection, ...]:
+    """The wrong design numbers that plant `name` can have, as effects named `parameter:NAME`."""
+    return cast("tuple[Imperfection, ...]", _module(name).parameters())
+
+
 def imperfections(name: str) -> tuple[Imperfection, ...]:
     """Everything that can be wrong with plant `name`, with units, sizes and claims."""
     return cast("tuple[Imperfection, ...]", _module(name).imperfections())

@@ -21,7 +21,8 @@ class Imperfection:
     2, 6 and 20 times the reading noise over a mixed sweep, as far as the mechanism can do that.
     `forms` are the laws that physics knows for it; the first is the default. `scales` are the factors on `sizes` with
     which the forms do about as much (none: all 1). `outsider` marks a fault that no effect
-    of the shared vocabulary describes.
+    of the shared vocabulary describes; without `spread`, sizes must be used as they are because little more or less
+    does nothing or everything.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Imperfection:
     limit: float = float("inf")
     signed: bool = False
     outsider: bool = False
+    spread: bool = True
     source: str = ""
 
     def size(self, grade: int, form: str = "") -> float:

@@ -35,3 +35,10 @@ def imperfections() -> tuple[Imperfection, ...]:
     from sim_device.physics.thesis.plant import IMPERFECTIONS
 
     return tuple(item for item in IMPERFECTIONS if item.stage != "ep")
+
+
+def parameters() -> tuple[Imperfection, ...]:
+    """The design numbers of this plant that can be wrong."""
+    from sim_device.physics.parameters import PARAMETERS
+
+    return tuple(item for item in PARAMETERS if item.stage != "ep")

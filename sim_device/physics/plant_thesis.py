@@ -27,3 +27,10 @@ def imperfections() -> tuple[Imperfection, ...]:
     from sim_device.physics.thesis.plant import IMPERFECTIONS
 
     return IMPERFECTIONS
+
+
+def parameters() -> tuple[Imperfection, ...]:
+    """The design numbers of this plant that can be wrong."""
+    from sim_device.physics.parameters import PARAMETERS
+
+    return PARAMETERS

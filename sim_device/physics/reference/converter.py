@@ -58,6 +58,7 @@ IMPERFECTIONS = (
         (7.2, 7.6, 8.2),
         "The air supply is `size` below its 20 psi; the booster cannot give more than the supply has.",
         limit=19.0,
+        spread=False,
     ),
     Imperfection(
         "supply_cycling",

@@ -24,7 +24,7 @@ PARAMETERS = (
     Imperfection(
         "parameter:compliance", "actuator", "1", (0.0055, 0.016, 0.055), "A spring softer by `size`.", signed=True
     ),
-    Imperfection("parameter:tau", "actuator", "1", (0.04, 0.12, 0.4), "Grease thicker by `size`.", signed=True),
+    Imperfection("parameter:tau", "actuator", "1", (0.04, 0.12, 0.4), "Grease thickens tau by `size`."),
     Imperfection(
         "parameter:rate_limit", "actuator", "1", (0.028, 0.075, 0.25), "The needle is in by `size`.", signed=True
     ),
@@ -59,7 +59,7 @@ def _rebuilt(b: Build, name: str, size: float) -> Build:
         case "tau" if size > -0.25:
             # the packing's drag is some 0.3 of what makes tau; the needle makes the rest
             return replace(b, viscous=b.viscous * (1 + 3.5 * size))
-        case "rate_limit" if 0 <= size < 0.9:
+        case "rate_limit" if -0.9 < size < 0.9:
             # a tighter needle whose gap is longer: slow motion, which it passes laminar, meets the same resistance
             narrow = 1 - size
             laminar = 1 - (1 - b.needle_laminar) * narrow**2

@@ -38,6 +38,7 @@ IMPERFECTIONS = (
         forms=("ceiling", "droop"),
         scales=(1.0, 0.97),
         limit=12.0,
+        spread=False,
     ),
     Imperfection(
         "pressure_surge",
