@@ -47,6 +47,8 @@ def decode(words: Sequence[int], kind: str, order: str = "ABCD") -> float:
 
 def _reordered(raw: bytes, order: str) -> bytes:
     """Every order is its own inverse, so this serves both ways."""
+    if order == "ABCD":
+        return raw
     words = [raw[at : at + 2] for at in range(0, len(raw), 2)]
     if order in ("BADC", "DCBA"):
         words = [word[::-1] for word in words]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from sim_device.codec import decode, encode, width
 from sim_device.pdu import COIL, HOLDING, ILLEGAL_ADDRESS, ILLEGAL_VALUE, INPUT, Refused
@@ -22,8 +23,9 @@ class Cell:
     order: str = "ABCD"
     tables: frozenset[int] = frozenset((HOLDING,))
 
-    @property
+    @cached_property
     def size(self) -> int:
+        """How many registers it takes."""
         return width(self.kind)
 
 
@@ -94,9 +96,11 @@ class RegisterMap:
             if entry is None:
                 raise Refused(ILLEGAL_ADDRESS)
             cell, offset = entry
-            words = encode(cell.read(), cell.kind, cell.order)
             span = min(cell.size - offset, end - at)
-            words[offset : offset + span] = values[at - address : at - address + span]
+            words = list(values[at - address : at - address + span])
+            if span < cell.size:
+                held = encode(cell.read(), cell.kind, cell.order)
+                words = held[:offset] + words + held[offset + span :]
             found.append((cell, decode(words, cell.kind, cell.order)))
             at += span
         return found

@@ -50,7 +50,7 @@ class Rig:
         self.command = safe_command  # what the transducer holds at its output now
         self.safe_command = safe_command
         self.sequence = 0
-        self._origin_s = clock.now_s()
+        self._origin_s = self._lived_s = clock.now_s()
         self.watchdog = Watchdog(heard_s=self._origin_s)
         self.outputs: Outputs = physics.advance(self._origin_s, safe_command)
 
@@ -70,7 +70,8 @@ class Rig:
                 self.outputs = self._live(self._origin_s + passed * self._refresh_s)
                 self.sequence += passed - self._refreshed
                 self._refreshed = passed
-        self._live(now_s)
+        if now_s > self._lived_s:
+            self._live(now_s)
         return now_s
 
     def sample(self) -> Outputs:
@@ -104,4 +105,5 @@ class Rig:
             self._physics.advance(expires_s, self.command)
             self.watchdog.trip(TIMED_OUT)
             self.command = self.safe_command
+        self._lived_s = to_s
         return self._physics.advance(to_s, self.command)
