@@ -52,11 +52,12 @@ def make_grid(time_s: FloatArray, sub_step_s: float = SUB_STEP_S) -> Grid:
     return Grid(np.ascontiguousarray(time_s), first, np.concatenate((np.zeros(1), gaps_s / counts)))
 
 
-def _compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Machine code that runs without the interpreter lock, kept on disk."""
     return cast(Callable[..., Any], njit(cache=True, nogil=True, error_model="numpy")(function))
 
 
-@_compiled
+@compiled
 def _lag(step_s: FloatArray, first: IntArray, command: FloatArray, tau_s: float, start: float, out: FloatArray) -> None:
     out[0] = start
     p = start
@@ -74,7 +75,7 @@ def lagged(grid: Grid, command: FloatArray, tau_s: float, start: float) -> Float
     return out
 
 
-@_compiled
+@compiled
 def _valve(
     step_s: FloatArray,
     first: IntArray,

@@ -109,7 +109,7 @@ def _interval(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.nd
     limit = 3.0 * 1.4826 * float(np.median(np.abs(rest))) + 1e-12
     found = intervals(np.array([log_tau]), slope[:, None], np.clip(rest, -limit, limit))[0]
     tau_s = float(np.exp(log_tau))
-    return Interval(tau_s, tau_s * np.exp(found.low - log_tau), tau_s * np.exp(found.high - log_tau))
+    return Interval(tau_s, tau_s * float(np.exp(found.low - log_tau)), tau_s * float(np.exp(found.high - log_tau)))
 
 
 def _fast_noise(values: FloatArray) -> float:

@@ -1,0 +1,103 @@
+"""Identify the design model from recorded runs: both curves, travel, lags, rate limit, each with its interval.
+
+RUN is a run folder, a CSV or a Parquet file; several of the same valve are fitted together.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from control.identify_result import Estimate, Identified
+    from logs.recording import Recording
+
+
+@click.command(name="identify", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
+@click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option("--out", metavar="MODEL.toml", required=True, type=click.Path(path_type=Path), help="The model file.")
+@click.option("--map", "mapping", metavar="time=COL,...", help="Columns of a foreign file.")
+@click.option("--units", metavar="command=kPa,...", help="Units of a foreign file.")
+@click.option(
+    "--command-timing",
+    type=click.Choice(["before", "after", "unknown"]),
+    default="before",
+    show_default=True,
+    help="Which interval a row's command belongs to.",
+)
+@click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
+def command(
+    runs: tuple[Path, ...], out: Path, mapping: str | None, units: str | None, command_timing: str, as_json: bool
+) -> None:
+    from control.design import save_design
+    from control.identify import identify
+    from hal.errors import BadInput
+    from logs.load import load_recording
+
+    if out.suffix != ".toml":
+        raise BadInput(f"--out {out}: a model file ends in .toml")
+    timing: object = command_timing
+    recordings = [
+        load_recording(path, mapping=mapping, units=units, command_timing=timing)  # type: ignore[arg-type]
+        for path in runs
+    ]
+    found = identify(recordings)
+    try:
+        out.parent.mkdir(parents=True, exist_ok=True)
+        save_design(found.design, out, comment=_comment(found))
+    except OSError as error:
+        raise BadInput(f"{out}: the model cannot be written ({error.strerror}); name another file") from error
+    if as_json:
+        click.echo(json.dumps({**found.to_plain(), "model": str(out)}))
+    else:
+        _print(found, recordings, out)
+
+
+def _comment(found: Identified) -> str:
+    lines = [f"identified from {', '.join(found.runs)} ({found.rows} rows); 95 % intervals:"]
+    for each in found.estimates:
+        lines.append(f"  {each.name}: {_value(each)} {each.unit}  {_interval(each)}  {each.source}")
+    return "\n".join([*lines, *found.notes])
+
+
+def _value(each: Estimate) -> str:
+    return f"{each.value:.5g}"
+
+
+def _interval(each: Estimate) -> str:
+    return "" if each.interval is None else f"{each.interval.low:.5g} .. {each.interval.high:.5g}"
+
+
+def _print(found: Identified, recordings: list[Recording], out: Path) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table(title=f"identified from {', '.join(found.runs)}")
+    table.add_column("number")
+    table.add_column("value", justify="right")
+    table.add_column("95 % interval", justify="right")
+    table.add_column("unit")
+    table.add_column("from")
+    for each in found.estimates:
+        table.add_row(
+            each.name, _value(each), _interval(each) or "-", each.unit, each.source, end_section=each.name == "k_eq"
+        )
+    console.print(table)
+    quality = found.quality
+    unit = found.design.position_unit
+    console.print(
+        f"model against record: RMS {quality.rms:.4g} {unit} = {quality.rms_percent_of_travel:.3f} % of travel, "
+        f"fit {quality.fit_percent:.1f} % over {found.rows} rows",
+        highlight=False,
+    )
+    for note in found.notes:
+        console.print(f"note: {note}", highlight=False)
+    for recording in recordings:
+        for data_note in recording.notes:
+            rows = f" ({data_note.rows} rows)" if data_note.rows else ""
+            console.print(f"data: {recording.name}: {data_note.what}: {data_note.handled}{rows}", highlight=False)
+    click.echo(f"model: {out}")

@@ -1,0 +1,178 @@
+"""The two steady-state backlash curves from the dwells of a record: pressure where the valve closes, where it opens.
+
+A dwell that the stem reached by moving up lies on the closing curve, one reached by moving down on the opening curve;
+one that left the stem where it was lies in the deadband, and those at the stops are on no curve.
+Source: Lustrino, MIT 2009, sections 1.4 and 2.1, figures 1-6 and 2-4.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from control.identify_interval import Interval
+from logs.recording import FloatArray, Recording
+
+LEAST_DWELL_S = 2.0
+TAIL_SHARE = 0.3  # the last part of a dwell that is averaged
+STOP_SHARE = 0.02  # of the range of positions: closer to an end than this is at a stop
+FEWEST_POINTS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Dwells:
+    """Steady readings, one per stay of the command; arrays of shape (m,). `drift` is the change over the tail.
+
+    `moved` is the stem's change since the dwell before, NaN for the first and across a gap.
+    """
+
+    start_s: FloatArray  # when the command took effect: the row before the first that shows it
+    tail_s: FloatArray  # begin and end of the averaged tail, counted from the start of the dwell, shape (m, 2)
+    command: FloatArray
+    pressure: FloatArray
+    position: FloatArray
+    moved: FloatArray
+    drift: FloatArray
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """position = compliance * (pressure - onset) on one branch, with the points it was drawn through."""
+
+    onset: Interval
+    compliance: Interval
+    pressure: FloatArray
+    position: FloatArray
+    used: np.ndarray
+
+
+@dataclass(frozen=True, slots=True)
+class BacklashCurves:
+    """Closing: a1 and k1. Opening: a2 and k2. A branch without enough points is None, and `notes` says so."""
+
+    closing: Curve | None
+    opening: Curve | None
+    notes: tuple[str, ...] = ()
+
+
+def find_dwells(recording: Recording) -> Dwells:
+    """The stays of at least 2 s during which the command did not change; pressure is the command where not measured."""
+    command, time_s = recording.command, recording.time_s
+    broken = np.zeros(recording.n, dtype=bool) if recording.gap_before is None else recording.gap_before.copy()
+    tolerance = 1e-6 * (float(np.ptp(command)) + 1e-12)
+    changes = np.flatnonzero((np.abs(np.diff(command)) > tolerance) | broken[1:]) + 1
+    edges = np.concatenate(([0], changes, [recording.n]))
+    pressure = command if recording.pressure is None else recording.pressure
+    rows: list[tuple[float, ...]] = []
+    last, unbroken = np.nan, True
+    for start, stop in pairwise(edges):
+        unbroken = unbroken and not broken[start]
+        if time_s[stop - 1] - time_s[start] < LEAST_DWELL_S:
+            continue
+        begin = int(np.searchsorted(time_s[:stop], time_s[stop - 1] - TAIL_SHARE * (time_s[stop - 1] - time_s[start])))
+        x, p = recording.position[begin:stop], pressure[begin:stop]
+        if np.isfinite(x).sum() < 2 or np.isfinite(p).sum() < 2:
+            continue
+        half = begin + (stop - begin) // 2
+        position = float(np.nanmedian(x))
+        drift = float(np.nanmean(recording.position[half:stop]) - np.nanmean(recording.position[begin : half or 1]))
+        moved = position - last if unbroken else np.nan
+        began_s = time_s[max(0, start - 1)]
+        tail_s = (time_s[begin] - began_s, time_s[stop - 1] - began_s)
+        rows.append((began_s, *tail_s, command[start], float(np.nanmean(p)), position, moved, drift))
+        last, unbroken = position, True
+    table = np.array(rows).reshape(-1, 8)
+    return Dwells(table[:, 0], table[:, 1:3], *table[:, 3:].T)
+
+
+def at_rest(dwells: Dwells, tau_s: float, delay_s: float) -> FloatArray:
+    """Where the stem would have come to rest, shape (m,), when the lag `tau_s` was still at work in the tails.
+
+    `delay_s` is what passes before the stem begins to move: the converter's lag.
+    """
+    begin, end = np.maximum(dwells.tail_s - delay_s, 0.0).T
+    reach = np.maximum(end - begin, 1e-9)
+    left = tau_s * (np.exp(-begin / tau_s) - np.exp(-end / tau_s)) / reach
+    moved = np.where(np.isfinite(dwells.moved), dwells.moved, 0.0)
+    return np.asarray(dwells.position + moved * left / (1.0 - np.minimum(left, 0.9)))
+
+
+def characterize(recordings: list[Recording], tau_s: float = 0.0, delay_s: float = 0.0) -> BacklashCurves:
+    """The curves through the dwells of all recordings (same units).
+
+    A dwell counts when the stem moved towards it by more than the noise and had come to rest. With `tau_s` (and
+    `delay_s`) known, the little that was left to move is added.
+    """
+    found = [find_dwells(recording) for recording in recordings]
+    pressure = np.concatenate([d.pressure for d in found])
+    position = np.concatenate([at_rest(d, tau_s, delay_s) if tau_s > 0.0 else d.position for d in found])
+    moved = np.concatenate([d.moved for d in found])
+    drift = np.concatenate([d.drift for d in found])
+    if position.size < FEWEST_POINTS:
+        return BacklashCurves(None, None, ("no dwells: the curves need a staircase or other stays of 2 s and more",))
+    low = min(float(np.nanmin(r.position)) for r in recordings)
+    reach = max(float(np.nanmax(r.position)) for r in recordings) - low
+    noise = max(reading_noise(r) for r in recordings)
+    inside = (position > low + STOP_SHARE * reach + 3 * noise) & (position < low + (1 - STOP_SHARE) * reach - 3 * noise)
+    least = max(4.0 * noise, 0.004 * reach)
+    settled = np.abs(drift) < np.maximum(3.0 * noise, 0.1 * np.abs(moved))
+    notes = []
+    curves: list[Curve | None] = []
+    for name, mask in (("closing", moved > least), ("opening", moved < -least)):
+        chosen = mask & inside & settled
+        curve = fit_curve(pressure[chosen], position[chosen]) if chosen.sum() >= FEWEST_POINTS else None
+        if curve is None:
+            notes.append(f"{name} curve: {int(chosen.sum())} settled dwells on it, at least {FEWEST_POINTS} are needed")
+        curves.append(curve)
+    return BacklashCurves(curves[0], curves[1], tuple(notes))
+
+
+def fit_curve(pressure: FloatArray, position: FloatArray) -> Curve | None:
+    """A straight line through the points of a branch that outliers cannot pull; None when they lie at one pressure.
+
+    Bisquare weights from a Theil-Sen start; intervals from the scatter, with Student's t; that of the onset by
+    Fieller's theorem to first order. Source: Maronna, Martin and Yohai, "Robust Statistics", Wiley 2006, chapter 5.
+    """
+    from scipy.stats import t as student
+    from scipy.stats import theilslopes
+
+    if np.ptp(pressure) < 1e-9:
+        return None
+    slope, start, _, _ = theilslopes(position, pressure)
+    design = np.column_stack((np.ones_like(pressure), pressure))
+    found = np.array([start, slope])
+    weight = np.ones_like(pressure)
+    for _ in range(20):
+        rest = position - design @ found
+        scale = 1.4826 * float(np.median(np.abs(rest))) + 1e-12 + 1e-6 * float(np.ptp(position))
+        weight = np.clip(1.0 - (rest / (4.685 * scale)) ** 2, 0.0, None) ** 2
+        normal = design.T @ (design * weight[:, None])
+        found = np.linalg.solve(normal, design.T @ (weight * position))
+    rest = position - design @ found
+    freedom = max(1.0, float(weight.sum()) - 2.0)
+    variance = float(np.sum(weight * rest**2)) / freedom
+    spread = np.linalg.inv(normal) * variance
+    reach = float(student.ppf(0.975, freedom))
+    intercept, compliance = float(found[0]), float(found[1])
+    if compliance <= 0.0:
+        return None
+    onset = -intercept / compliance
+    gradient = np.array([-1.0 / compliance, intercept / compliance**2])
+    onset_reach = reach * float(np.sqrt(gradient @ spread @ gradient))
+    slope_reach = reach * float(np.sqrt(spread[1, 1]))
+    return Curve(
+        Interval(onset, onset - onset_reach, onset + onset_reach),
+        Interval(compliance, compliance - slope_reach, compliance + slope_reach),
+        pressure,
+        position,
+        weight > 0.0,
+    )
+
+
+def reading_noise(recording: Recording) -> float:
+    """Standard deviation of fast changes of the position reading, robustly."""
+    steps = np.diff(recording.position)
+    steps = steps[np.isfinite(steps)]
+    return float(1.4826 * np.median(np.abs(steps)) / np.sqrt(2.0)) if steps.size else 0.0

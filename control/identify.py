@@ -1,0 +1,224 @@
+"""From recordings to the numbers of the design model, each with a 95 % interval, or with the default it was left at.
+
+In stages: the converter's lag from command and pressure; the valve by an output-error fit given that pressure; then,
+for comparison, the two curves from steady dwells and the time constant by the 63 % rule.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from control.characterize import characterize, reading_noise
+from control.design import DesignModel
+from control.identify_interval import Interval, covariance
+from control.identify_kept import Facts, settle_numbers
+from control.identify_model import lagged, make_grid
+from control.identify_pressure import PressureStage, fit_pressure
+from control.identify_result import Estimate, Identified, quality_of
+from control.identify_steps import time_constant_63
+from control.identify_valve import Freedom, Track, ValveFit, fit_valve, jacobian, refit_separate
+from hal.errors import BadInput, JobFailed
+from logs.recording import FloatArray, Recording
+
+FEWEST_ROWS = 30
+
+
+def identify(recordings: Sequence[Recording], defaults: DesignModel | None = None) -> Identified:
+    """The design model of the valve that made these recordings; `defaults` are kept where they do not tell.
+
+    Raises: `BadInput` when they are in different units, too short, or the valve does not move; `JobFailed` when the
+    position falls with rising pressure, or follows the pressure in no way that the model knows.
+    """
+    _check(recordings)
+    unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
+    base = defaults or default_design(unit_p, unit_x)
+    notes: list[str] = []
+    tracks: list[Track] = []
+    stages: list[PressureStage] = []
+    for recording in recordings:
+        stage, fine_s, fine = _pressure(recording, base.ep_tau_s, notes)
+        if stage is not None:
+            stages.append(stage)
+        tracks += _tracks(recording, fine_s, fine, notes)
+    if not tracks:
+        raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
+    fit, freedom = fit_valve(tracks)
+    residual = fit.residual(tracks)
+    _check_fit(residual, tracks, recordings)
+    facts = Facts(base, unit_p, unit_x, _ep_tau(stages), fit, freedom, tracks)
+    spread, freedom_rows = covariance(jacobian(tracks, fit, freedom), residual)
+    design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
+    estimates += _slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design)
+    estimates += _other_ways(list(recordings), design, notes)
+    _say_zero(residual, tracks, fit, design, notes)
+    position = np.concatenate([t.position[t.good] for t in tracks])
+    return Identified(
+        design,
+        tuple(estimates),
+        quality_of(residual, position, design.travel),
+        tuple(recording.name for recording in recordings),
+        int(residual.size),
+        tuple(dict.fromkeys(notes)),
+        tuple(fit.predict(tracks)),
+    )
+
+
+def default_design(pressure_unit: str, position_unit: str) -> DesignModel:
+    """The thesis's numbers, with travel and rate limit brought to percent where positions are in percent."""
+    plain = DesignModel()
+    if position_unit == "in":
+        return DesignModel(pressure_unit=pressure_unit, position_unit=position_unit)
+    scale = 100.0 / plain.travel
+    return DesignModel(
+        compliance=plain.compliance * scale,
+        rate_limit=plain.rate_limit * scale,
+        travel=100.0,
+        pressure_unit=pressure_unit,
+        position_unit=position_unit,
+    )
+
+
+def _check(recordings: Sequence[Recording]) -> None:
+    if not recordings:
+        raise BadInput("no recording to identify from; name at least one run or file")
+    first = recordings[0]
+    for each in recordings:
+        if (each.pressure_unit, each.position_unit) != (first.pressure_unit, first.position_unit):
+            raise BadInput(
+                f"{each.name} is in {each.pressure_unit} and {each.position_unit}, {first.name} in "
+                f"{first.pressure_unit} and {first.position_unit}; bring them to the same units with --units"
+            )
+        if each.n < FEWEST_ROWS:
+            raise BadInput(f"{each.name}: {each.n} rows are too few to identify anything; at least {FEWEST_ROWS}")
+    if max(float(np.ptp(each.command)) for each in recordings) <= 0.0:
+        raise BadInput(
+            f"{first.name}: the command never changes; record a sweep, for example `lostmotion sweep staircase`"
+        )
+    moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
+    if moved < 8.0 * max(reading_noise(each) for each in recordings):
+        raise BadInput(f"{first.name}: the position never leaves its noise; sweep over both curves (about 6 to 12 psi)")
+
+
+def _pressure(
+    recording: Recording, ep_tau_s: float, notes: list[str]
+) -> tuple[PressureStage | None, FloatArray, FloatArray]:
+    """The stage (None without pressure), the fine times and the pressure that drives the play there."""
+    grid = make_grid(recording.time_s)
+    if recording.pressure is None:
+        notes.append(
+            f"{recording.name}: no measured pressure: the E/P and actuator stages cannot be separated; "
+            f"the E/P lag is kept at {ep_tau_s:g} s, and tau carries its error"
+        )
+        return None, grid.fine_time_s, lagged(grid, recording.command, ep_tau_s, float(recording.command[0]))
+    stage = fit_pressure(grid, recording.command, recording.pressure, ep_tau_s)
+    if recording.command_timing == "unknown":
+        later = np.concatenate((recording.command[:1], recording.command[:-1]))
+        shifted = fit_pressure(grid, later, recording.pressure, ep_tau_s)
+        if shifted.rms < stage.rms:
+            stage = shifted
+            notes.append(f"{recording.name}: the commands fit the pressure better when they count from their row on")
+    if stage.tau_s is None:
+        notes.append(f"{recording.name}: the pressure does not show the E/P lag; it is kept at {ep_tau_s:g} s")
+    if not stage.is_calibrated:
+        notes.append(
+            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}: "
+            "the E/P transducer and its transmitter disagree; the design model has no place for that"
+        )
+    return stage, grid.fine_time_s, stage.fine
+
+
+def _tracks(recording: Recording, fine_s: FloatArray, fine: FloatArray, notes: list[str]) -> list[Track]:
+    """The record cut at its gaps: what the valve did meanwhile nobody knows."""
+    breaks = [] if recording.gap_before is None else np.flatnonzero(recording.gap_before).tolist()
+    tracks = []
+    for start, stop in zip([0, *breaks], [*breaks, recording.n], strict=True):
+        position = recording.position[start:stop]
+        good = np.isfinite(position)
+        if good.sum() < FEWEST_ROWS:
+            notes.append(f"{recording.name}: a stretch of {stop - start} rows between gaps is too short and left out")
+            continue
+        grid = make_grid(recording.time_s[start:stop])
+        pressure = np.interp(grid.fine_time_s, fine_s, fine)
+        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good))
+    return tracks
+
+
+def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
+    """The E/P lag over all recordings, weighted by what each knows of it."""
+    known = [stage.tau_s for stage in stages if stage.tau_s is not None]
+    if not known:
+        return None
+    weights = np.array([1.0 / max(each.half_width, 1e-9) ** 2 for each in known])
+    value = float(weights @ [each.value for each in known] / weights.sum())
+    reach = float(weights.sum() ** -0.5)
+    return Interval(value, value - reach, value + reach)
+
+
+def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequence[Recording]) -> None:
+    position = np.concatenate([t.position[t.good] for t in tracks])
+    if float(np.std(residual)) < 0.6 * float(np.std(position)):
+        return
+    pressure = np.concatenate([t.pressure[t.grid.first][t.good] for t in tracks])
+    names = ", ".join(recording.name for recording in recordings)
+    if float(np.corrcoef(pressure, position)[0, 1]) < -0.3:
+        raise JobFailed(
+            f"{names}: the position falls as the pressure rises; 0 must be the open end, so turn the position round"
+        )
+    raise JobFailed(
+        f"{names}: the position does not follow the pressure in any way that the model knows; check the columns"
+    )
+
+
+def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str, design: DesignModel) -> list[Estimate]:
+    """k1 and k2 from a fit that lets them differ, and the thesis's k_eq, their mean."""
+    found, separate = refit_separate(tracks, fit, freedom)
+    spread, rows = covariance(jacobian(tracks, found, separate), found.residual(tracks))
+    k1, k2 = float(found.numbers[2]), float(found.numbers[3])
+    both = spread[2:4, 2:4]
+    reach = _student(rows) * np.sqrt([both[0, 0], both[1, 1], 0.25 * both.sum()])
+    values = {"k1": k1, "k2": k2, "k_eq": 0.5 * (k1 + k2)}
+    estimates = []
+    for (name, value), half in zip(values.items(), reach, strict=True):
+        known = bool(np.isfinite(half) and half < 0.5 * value)
+        interval = Interval(value, value - float(half), value + float(half)) if known else None
+        kept = Estimate(name, design.compliance, None, unit, "kept", "its curve is not in the record")
+        estimates.append(Estimate(name, value, interval, unit, "fit") if known else kept)
+    return estimates
+
+
+def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[str]) -> list[Estimate]:
+    """What steady dwells and the 63 % rule say, for comparison with the fit."""
+    unit_p, unit_x = design.pressure_unit, design.position_unit
+    curves = characterize(recordings, design.tau_s, design.ep_tau_s)
+    estimates = []
+    for curve, onset, slope in ((curves.closing, "a1", "k1"), (curves.opening, "a2", "k2")):
+        if curve is not None:
+            k = curve.compliance
+            estimates.append(Estimate(f"{onset} (curves)", curve.onset.value, curve.onset, unit_p, "curves"))
+            estimates.append(Estimate(f"{slope} (curves)", k.value, k, f"{unit_x}/{unit_p}", "curves"))
+    steps = time_constant_63(recordings, design.ep_tau_s, design.tau_s, design.rate_limit, design.travel)
+    if steps.tau_s is not None:
+        said = f"{steps.raw_s.size} steps, {np.median(steps.raw_s):.2f} s with the E/P lag"
+        estimates.append(Estimate("tau (63 %)", steps.tau_s.value, steps.tau_s, "s", "63 % rule", said))
+    notes += curves.notes
+    return estimates
+
+
+def _say_zero(
+    residual: FloatArray, tracks: Sequence[Track], fit: ValveFit, design: DesignModel, notes: list[str]
+) -> None:
+    """A reading that is off at the open stop moves both curves; the design model cannot say so, this can."""
+    predicted = np.concatenate([x[t.good] for t, x in zip(tracks, fit.predict(tracks), strict=True)])
+    open_rows = predicted <= 1e-6 * design.travel
+    if open_rows.sum() >= FEWEST_ROWS:
+        zero = float(np.median(residual[open_rows]))
+        if abs(zero) > 0.005 * design.travel:
+            notes.append(f"fully open it reads {zero:+.4f} {design.position_unit}, not 0: check the LVDT's zero")
+
+
+def _student(freedom: int) -> float:
+    from scipy.stats import t as student
+
+    return float(student.ppf(0.975, freedom))

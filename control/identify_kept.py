@@ -1,0 +1,140 @@
+"""Which fitted numbers go into the design model, and which the record says nothing of and are left at their default."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from control.design import DesignModel
+from control.identify_interval import Interval
+from control.identify_result import Estimate
+from control.identify_valve import Freedom, Track, ValveFit, top_speed
+from logs.recording import FloatArray
+
+VAGUE = 0.3  # an interval whose half width is more than this share of the number's size tells nothing
+VAGUE_ONSET = 0.15  # likewise for a1 and a2, as a share of the range of pressures
+
+
+@dataclass(frozen=True, slots=True)
+class Facts:
+    """What the stages have found, and the design whose numbers are kept where they have not."""
+
+    base: DesignModel
+    unit_p: str
+    unit_x: str
+    ep_tau: Interval | None
+    fit: ValveFit
+    freedom: Freedom
+    tracks: Sequence[Track]
+
+    @property
+    def span(self) -> float:
+        """The range of pressures."""
+        return max(float(t.pressure.max()) for t in self.tracks) - min(float(t.pressure.min()) for t in self.tracks)
+
+    @property
+    def highest(self) -> float:
+        """The highest position, without its noise."""
+        return max(float(x.max()) for x in self.fit.predict(self.tracks))
+
+
+def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]) -> tuple[DesignModel, list[Estimate]]:
+    """The design model and the estimates of its numbers. `spread` is the fit's covariance, `rows` its freedom."""
+    from scipy.stats import t as student
+
+    reach = float(student.ppf(0.975, rows))
+    half = reach * np.sqrt(np.diag(spread))
+    values = facts.freedom.pack(facts.fit.numbers)
+    found: dict[str, Interval] = {}
+    for name, value, width in zip(facts.freedom.names, values, half[: values.size], strict=True):
+        vague = VAGUE_ONSET * facts.span if name in ("a1", "a2") else VAGUE * abs(value)
+        if np.isfinite(width) and width <= vague:
+            found[name] = Interval(float(value), float(value - width), float(value + width))
+    estimates = [*_onsets(facts, found, reach, spread, notes), *_rest(facts, found, notes)]
+    by_name = {each.name: each.value for each in estimates}
+    design = replace(
+        facts.base,
+        ep_tau_s=by_name["ep.tau"],
+        a1=by_name["a1"],
+        a2=by_name["a2"],
+        compliance=by_name["compliance"],
+        tau_s=by_name["tau"],
+        rate_limit=by_name["rate_limit"],
+        travel=by_name["travel"],
+    )
+    return design, estimates
+
+
+def _onsets(
+    facts: Facts, found: dict[str, Interval], reach: float, spread: FloatArray, notes: list[str]
+) -> list[Estimate]:
+    """a1, a2 and the deadband; where one curve is not in the record it is put at the default's distance."""
+    unit, default_width = facts.unit_p, facts.base.deadband if facts.unit_p == "psi" else 0.0
+    a1, a2 = found.get("a1"), found.get("a2")
+    first = facts.fit.numbers[0]
+    if a1 is not None and facts.fit.numbers[1] >= first:  # curves that cross act as one: there is no play
+        notes.append("no backlash to be seen: one curve serves both directions, the deadband is 0")
+        return [
+            Estimate("a1", a1.value, a1, unit, "fit"),
+            Estimate("a2", a1.value, a1, unit, "fit"),
+            Estimate("deadband", 0.0, Interval(0.0, 0.0, 2.0 * a1.half_width), unit, "fit"),
+        ]
+    if a1 is not None and a2 is not None:
+        half = reach * float(np.sqrt(max(0.0, spread[0, 0] + spread[1, 1] - 2.0 * spread[0, 1])))
+        width = a1.value - a2.value
+        deadband = Estimate("deadband", width, Interval(width, width - half, width + half), unit, "fit")
+        return [Estimate("a1", a1.value, a1, unit, "fit"), Estimate("a2", a2.value, a2, unit, "fit"), deadband]
+    kept = "not in the record: default deadband"
+    if a1 is not None:
+        notes.append("the opening curve is not in the record: go back down past it; the deadband is the default's")
+        low = Estimate("a2", a1.value - default_width, None, unit, "kept", kept)
+        return [Estimate("a1", a1.value, a1, unit, "fit"), low, Estimate("deadband", default_width, None, unit, "kept")]
+    if a2 is not None:
+        notes.append("the closing curve is not in the record: go up past it; the deadband is the default's")
+        high = Estimate("a1", a2.value + default_width, None, unit, "kept", kept)
+        return [
+            high,
+            Estimate("a2", a2.value, a2, unit, "fit"),
+            Estimate("deadband", default_width, None, unit, "kept"),
+        ]
+    notes.append("neither curve can be told from the record; both are the default's")
+    base = facts.base
+    return [
+        Estimate("a1", base.a1, None, unit, "kept"),
+        Estimate("a2", base.a2, None, unit, "kept"),
+        Estimate("deadband", base.deadband, None, unit, "kept"),
+    ]
+
+
+def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Estimate]:
+    base, unit_x = facts.base, facts.unit_x
+    highest, speed = facts.highest, top_speed(facts.tracks, facts.fit)
+    said = {
+        "compliance": ("compliance", base.compliance, f"{unit_x}/{facts.unit_p}", "not excited by the record"),
+        "tau": ("tau", base.tau_s, "s", "not excited by the record"),
+        "rate_limit": (
+            "rate limit",
+            max(base.rate_limit, 1.2 * speed),
+            f"{unit_x}/s",
+            f"never reached: it is above {speed:.3g} {unit_x}/s",
+        ),
+        "travel": (
+            "travel",
+            max(base.travel, highest),
+            unit_x,
+            f"the closed stop was never touched: it is above {highest:.4g} {unit_x}",
+        ),
+    }
+    estimates = []
+    for name, (words, default, unit, why) in said.items():
+        if name in found:
+            estimates.append(Estimate(name, found[name].value, found[name], unit, "fit"))
+        else:
+            notes.append(f"{words}: {why}; kept at {default:.4g} {unit}")
+            estimates.append(Estimate(name, default, None, unit, "kept", why))
+    ep = facts.ep_tau
+    kept = Estimate("ep.tau", base.ep_tau_s, None, "s", "kept", "not to be told from the record")
+    estimates.append(Estimate("ep.tau", ep.value, ep, "s", "fit") if ep is not None else kept)
+    return estimates
