@@ -63,16 +63,14 @@ def _times(recording: Recording, dwells: Dwells, ep_tau_s: float, tau_s: float, 
             continue
         start_s = dwells.start_s[i]
         rows = (recording.time_s >= start_s) & (recording.time_s <= start_s + dwells.tail_s[i, 1])
-        crossed = _crossing(
-            recording.time_s[rows], recording.position[rows], ends[i - 1] + SHARE * step, WINDOW * abs(step)
-        )
+        crossed = _crossing(recording.time_s[rows], (ends[i] - recording.position[rows]) / step)
         if crossed is not None and crossed > start_s:
             times.append(crossed - start_s)
     return times
 
 
 def _crossing(time_s: FloatArray, left: FloatArray) -> float | None:
-    """When the share of a step that is left, `left`, has fallen to 1/e, by a line through its logarithm around there."""
+    """When the share of a step that is left, `left`, has fallen to 1/e, by a line through its logarithm."""
     near = (left > WINDOW[0]) & (left < WINDOW[1])
     if near.sum() < 2 or np.ptp(time_s[near]) <= 0.0:
         return None
