@@ -22,6 +22,7 @@ OPENING: Colour = (186, 140, 255)
 OTHERS: tuple[Colour, ...] = ((77, 208, 225), (255, 213, 79), (174, 213, 129), (244, 143, 177), (176, 190, 197))
 RISING: Colour = (150, 112, 66)
 FALLING: Colour = (78, 116, 160)
+LEFT_PSI, RIGHT_PSI = 6.0, 2.0  # room beside the design curves
 STATES = {
     "idle": 0x78909CFF,
     "conditioning": 0x4DB6ACFF,
@@ -58,8 +59,10 @@ class Scene:
     curves: Mapping[str, FloatArray]
 
     @classmethod
-    def of(cls, units: Mapping[str, str], start: Mapping[str, object]) -> Scene:
-        """`units` names the columns and their units; `start` may hold "design" and "bench"."""
+    def of(
+        cls, units: Mapping[str, str], start: Mapping[str, object], seen: Mapping[str, FloatArray] | None = None
+    ) -> Scene:
+        """`units` names the columns and their units; `start` may hold "design" and "bench"; `seen` are the samples."""
         names = {role: _first(units, role) for role in ("command", "pressure", "position", "target")}
         groups = [_pair("/pressure", units, names["command"], names["pressure"])]
         groups.append(_pair("/position", units, names["target"], names["position"]))
@@ -68,13 +71,15 @@ class Scene:
         groups += _rest(units, taken | {"lateness_s", "latency_s"})
         design = start.get("design")
         curves = design_curves(design) if isinstance(design, Mapping) else None
-        x_name = names["pressure"] or names["command"]
+        x_name, y_name = names["pressure"] or names["command"], names["position"]
+        bench = start.get("bench")
+        info = bench if isinstance(bench, Mapping) else {}
         return cls(
             groups=tuple(group for group in groups if group.columns),
-            plane=_plane(units, x_name, names["position"], start, curves) if names["position"] and x_name else None,
+            plane=_plane(units, x_name, y_name, info, curves, seen or {}) if x_name and y_name else None,
             plane_x=x_name,
             command=names["command"],
-            position=names["position"],
+            position=y_name,
             target=names["target"],
             curves=curves or {},
         )
@@ -98,7 +103,8 @@ class Scene:
             self.plane.draw_frame(stream)
             for name, colour in (("closing", CLOSING), ("opening", OPENING)):
                 if name in self.curves:
-                    line = self.curves[name]
+                    line = self.curves[name].copy()
+                    line[:, 0] = np.clip(line[:, 0], *self.plane.x)
                     self.plane.draw_line(stream, f"design/{name}", [line], colour, 1.3)
                     above = self.plane.y[1] + 0.06 * (self.plane.y[1] - self.plane.y[0])
                     at = (float(line[2][0]), above)
@@ -143,25 +149,38 @@ def _plane(
     units: Mapping[str, str],
     x_name: str,
     y_name: str,
-    start: Mapping[str, object],
+    info: Mapping[str, object],
     curves: Mapping[str, FloatArray] | None,
+    seen: Mapping[str, FloatArray],
 ) -> Plane:
-    bench = start.get("bench")
-    info: Mapping[str, object] = bench if isinstance(bench, Mapping) else {}
-    percent_x, percent_y = units[x_name] == "percent", units[y_name] == "percent"
-    low, high = (0.0, 100.0) if percent_x else (3.0, 15.0)
-    low, high = _number(info.get("command_min"), low), _number(info.get("command_max"), high)
-    travel = 100.0 if percent_y else _number(info.get("travel_in"), 0.5625)
+    """The frame: around the design curves and the samples where there are any, else what the bench can do."""
+    low, high = (0.0, 100.0) if units[x_name] == "percent" else (3.0, 15.0)
+    bottom, top = 0.0, 100.0 if units[y_name] == "percent" else _number(info.get("travel_in"), 0.5625)
     if curves:
-        corner = curves["closing"][2]
-        travel, high = max(travel, float(corner[1])), max(high, float(corner[0]) + 0.5)
-    margin = 0.06 * travel
+        least, most = _number(info.get("command_min"), low), _number(info.get("command_max"), high)
+        low = max(min(least, low), float(curves["opening"][1, 0]) - LEFT_PSI)
+        high = min(max(most, high), float(curves["closing"][2, 0]) + RIGHT_PSI)
+        top = float(curves["closing"][2, 1])
+    elif not seen:
+        low, high = _number(info.get("command_min"), low), _number(info.get("command_max"), high)
+    low, high = _widened(low, high, seen.get(x_name))
+    bottom, top = _widened(bottom, top, seen.get(y_name))
+    margin = 0.06 * (top - bottom)
     return Plane(
         x=(low, high),
-        y=(-margin, travel + margin),
+        y=(bottom - margin, top + margin),
         x_label=f"{x_name.partition('_')[0]} [{units[x_name]}]",
         y_label=f"position [{units[y_name]}]",
     )
+
+
+def _widened(low: float, high: float, values: FloatArray | None) -> tuple[float, float]:
+    """A range that holds the samples too, but for the wildest thousandth."""
+    good = np.zeros(0) if values is None else values[np.isfinite(values)]
+    if not good.size:
+        return low, high
+    least, most = np.percentile(good, (0.05, 99.95))
+    return min(low, float(least)), max(high, float(most))
 
 
 def _number(value: object, other: float) -> float:

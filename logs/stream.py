@@ -57,14 +57,20 @@ class RunView:
 
     @classmethod
     def open(
-        cls, start: Mapping[str, object], columns: Mapping[str, str], *, serve: bool = True, file: Path | None = None
+        cls,
+        start: Mapping[str, object],
+        columns: Mapping[str, str],
+        *,
+        serve: bool = True,
+        file: Path | None = None,
+        design: Mapping[str, object] | None = None,
     ) -> RunView:
         """Starts the view; takes the second that importing rerun takes, so call it before the run.
 
         `columns` and `start` are those of the `RunWriter`. With `serve` viewers can connect to `uri`; with `file`
-        the view is written there too.
+        the view is written there too. `design` draws its curves where `start` names no design.
         """
-        view = cls(columns, start)
+        view = cls(columns, {**start, "design": start.get("design") or design})
         try:
             view._start(start, serve, file)
         except Exception as error:  # the view is a convenience: whatever it is, the run goes on

@@ -51,10 +51,16 @@ def open_window(target: str) -> subprocess.Popen[bytes]:
 
 
 def take_picture(
-    file: Path, png: Path, *, at_s: float | None = None, size: tuple[int, int] = (1600, 1000)
+    file: Path,
+    png: Path,
+    *,
+    at_s: float | None = None,
+    size: tuple[int, int] = (1600, 1000),
+    settle_s: float = 6.0,
 ) -> list[str]:
     """Renders `file` without a screen into `png`, with the cursor at `at_s` (the end if None).
 
+    The viewer's start-up messages cover a corner of the picture for 5 s; `settle_s` waits for them to go.
     Returns what the views complain about, as sentences.
     Raises: `JobFailed` when this machine has no Vulkan driver, or the viewer does not come up in time.
     """
@@ -66,7 +72,7 @@ def take_picture(
         clock = RealClock()
         _wait_for_recording(client, clock)
         _set_cursor(client, at_s)
-        png.write_bytes(_settled_picture(client, clock))
+        png.write_bytes(_settled_picture(client, clock, settle_s))
         return [report.summary for view in client.get_state().views for report in view.reports]
 
 
@@ -129,14 +135,14 @@ def _set_cursor(client: ViewerClient, at_s: float | None) -> None:
         client.set_time("run_time", duration=at_s, play_state="paused")
 
 
-def _settled_picture(client: ViewerClient, clock: Clock) -> bytes:
+def _settled_picture(client: ViewerClient, clock: Clock, settle_s: float) -> bytes:
     """Chunks of a file load lazily and messages fade: shoots until two pictures in a row are the same."""
     start_s = clock.now_s()
     last = b""
     while clock.now_s() < start_s + PATIENCE_S:
         clock.sleep_until(clock.now_s() + 0.7)
         picture = bytes(client.take_screenshot())
-        if picture == last and clock.now_s() > start_s + 6.0:  # start-up messages cover a corner for 5 s
+        if picture == last and clock.now_s() > start_s + settle_s:
             return picture
         last = picture
     return last

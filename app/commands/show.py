@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from logs.run import Run
 
+SKETCHED = ("command", "pressure", "position", "target")
 HEAD = (
     *("kind", "utc", "experiment", "controller", "profile", "seed", "note", "calibration_id"),
     *("version", "git", "uuid"),
@@ -128,7 +129,7 @@ def _print_sketch(console: Console, run: Run) -> None:
         return
     width = max(30, min(console.width - 16, 100))
     for name in run.columns:
-        if name.partition("_")[0] in ("command", "pressure", "position", "target"):
+        if name.partition("_")[0] in SKETCHED and not name.endswith("_quality"):
             console.print()
             console.print(Text(name, style="bold"))
             for line in with_scale(run.columns[name], run.units.get(name, ""), columns=width, rows=4):

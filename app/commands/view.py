@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 @click.option("--rrd", type=click.Path(path_type=Path), help="Where to write the view (default: into the run folder).")
 @click.option("--headless-png", "png", type=click.Path(path_type=Path), help="Render a picture; needs no screen.")
 @click.option("--at", "at_s", type=float, help="Bench time of the picture's cursor [s]; the end by default.")
+@click.option("--design", type=click.Path(path_type=Path), help="Design model whose curves are drawn.  [default: ours]")
 @click.option("--no-window", is_flag=True, help="Only write the .rrd file.")
 @foreign_options
 def command(
@@ -25,6 +26,7 @@ def command(
     rrd: Path | None,
     png: Path | None,
     at_s: float | None,
+    design: Path | None,
     no_window: bool,
     mapping: str | None,
     units: str | None,
@@ -44,7 +46,7 @@ def command(
         return
     record = open_run(run, mapping, units, command_timing)
     say_problems(record)
-    file = _write_view(record, rrd)
+    file = _write_view(record, rrd, design)
     click.echo(f"view: {file}")
     if png is not None:
         for complaint in take_picture(file, png, at_s=at_s):
@@ -72,16 +74,28 @@ def _need_screen(there: bool, address: str) -> None:
         )
 
 
-def _write_view(record: Run, rrd: Path | None) -> Path:
-    """Into the run folder, or beside a foreign file's name in the temporary folder, unless told otherwise."""
+def _write_view(record: Run, rrd: Path | None, design: Path | None) -> Path:
+    """Into the run folder; for a foreign file, or a folder that cannot be written, into the temporary folder."""
     import os
     import tempfile
 
     from logs.layout import VIEW
     from logs.rrd import write_rrd
 
+    curves = _curves(record, design)
     if rrd is not None:
-        return write_rrd(record, rrd)
+        return write_rrd(record, rrd, curves)
     if record.path.is_dir() and os.access(record.path, os.W_OK):
-        return write_rrd(record, record.path / VIEW)
-    return write_rrd(record, Path(tempfile.gettempdir()) / f"{record.name}.rrd")
+        return write_rrd(record, record.path / VIEW, curves)
+    return write_rrd(record, Path(tempfile.gettempdir()) / f"{record.path.stem}.rrd", curves)
+
+
+def _curves(record: Run, design: Path | None) -> dict[str, object] | None:
+    """The design to draw: the one named, else the thesis's for a record in psi and in."""
+    from dataclasses import asdict
+
+    from control.design import DesignModel, load_design
+
+    if design is not None:
+        return asdict(load_design(design))
+    return asdict(DesignModel()) if {"psi", "in"} <= set(record.units.values()) else None

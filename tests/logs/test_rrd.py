@@ -46,7 +46,7 @@ def test_every_sample_state_and_event_is_in_the_file_with_a_layout(tmp_path: Pat
     for entity in ("/plane/design/closing", "/plane/design/opening", "/plane/run/rising", "/plane/run/falling"):
         assert rows[entity] == 1, entity
     assert rows["/plane/trail"] == rows["/plane/now"] >= 490 // 12
-    assert rows["/state/bench"] == 3  # its colours, running, and the end
+    assert rows["/state/bench"] == 2  # its colours, and running
     assert (rows["/log/event"], rows["/log/note"], rows["/log/end"], rows["/about"]) == (1, 1, 1, 1)
     assert blueprints == 1
     assert not list(tmp_path.glob("*.partial"))

@@ -32,7 +32,7 @@ def view(tmp_path: Path) -> Path:
 def test_a_picture_has_colours_on_it_and_no_view_complains(view: Path, tmp_path: Path) -> None:
     from PIL import Image
 
-    complaints = viewer.take_picture(view, tmp_path / "view.png", size=(1000, 700))
+    complaints = viewer.take_picture(view, tmp_path / "view.png", size=(1000, 700), settle_s=1.5)
     assert complaints == []
     picture = np.asarray(Image.open(tmp_path / "view.png").convert("RGB")).reshape(-1, 3).astype(int)
     for colour in ((110, 168, 254), (255, 166, 64), (129, 199, 132), (186, 140, 255), (240, 98, 146)):
