@@ -10,7 +10,7 @@ from control.design import DesignModel
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.insert import inserted_from, plant_of
-from twin.plant import Plant, pressure_response, reading_response, stem_response
+from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
 from twin.timegrid import TimeGrid, make_grid
 
 __all__ = ["Start", "inserted_from", "plant_of", "simulate_recording", "start_of", "step_for"]
@@ -69,11 +69,12 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     pressure = _seen(recording.pressure, float(recording.command[0]))[0]
     middle = plant.design.compliance * (pressure - plant.design.offset)
     readings = _seen(recording.position, float(np.clip(middle, 0.0, plant.design.travel)))[:_FIRST_ROWS]
-    position = _stem(plant, float(np.median(readings)))
+    c = plant.coefficients(recording.duration_s)
+    position = stem_at(c, float(np.median(readings)))
     rest = Start(float(pressure), position, position)
     if not np.isfinite(recording.position).any():
         return rest
-    stems = [position, _stem(plant, float(readings[0])), _stem(plant, _before(recording))]
+    stems = [position, stem_at(c, float(readings[0])), stem_at(c, _before(recording))]
     plays = np.linspace(0.0, plant.design.travel, 33).tolist()
     candidates = [rest, *(Start(float(pressure), x, w) for x in stems for w in (x, *plays))]
     stop = int(np.searchsorted(recording.time_s, recording.time_s[0] + 2.0 * plant.design.tau_s)) + 2
@@ -97,17 +98,6 @@ def _before(recording: Recording) -> float:
     later, sooner = np.triu_indices(rows.size, 1)[::-1]
     slope = np.median((y[later] - y[sooner]) / (t[later] - t[sooner])) if rows.size > 1 else 0.0
     return float(np.median(y - slope * t))
-
-
-def _stem(plant: Plant, reading: float) -> float:
-    """The stem position that reads as `reading` at the start."""
-    travel = plant.design.travel
-    stems = np.linspace(0.0, travel, 257)
-    c = plant.coefficients(1.0)
-    still = TimeGrid(np.zeros(1), np.zeros(1, dtype=np.int64))
-    readings = np.array([reading_response(c, still, np.array([x]))[0] for x in stems])
-    order = np.argsort(readings, kind="stable")
-    return float(np.interp(reading, readings[order], stems[order]))
 
 
 def _miss(plant: Plant, head: Recording, grid: TimeGrid, start: Start) -> float:
