@@ -22,7 +22,8 @@ EP_TAU_FALL_S = 6
 EP_RATE_UP = 7  # [pressure/s]
 EP_RATE_DOWN = 8
 EP_SUPPLY = 9  # highest pressure [pressure]
-EP_COUNT = 10
+EP_CLIP = 10  # pressure that is cut off rather than aimed at [pressure]
+EP_COUNT = 11
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -55,7 +56,8 @@ V_HARD_LOW = 26  # stops that hold the stem only, not the play output [position]
 V_HARD_HIGH = 27
 V_STRIBECK = 28  # friction at rest above friction in motion, falling with speed [pressure]
 V_STRIBECK_SPEED = 29  # speed at which 1/e of it is left [position/s]
-V_COUNT = 30
+V_HELD = 30  # distance between target and stem up to which a stem at rest stays [position]
+V_COUNT = 31
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -85,7 +87,7 @@ def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
     c = np.zeros(EP_COUNT)
     c[EP_GAIN] = 1.0
-    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY]] = FOREVER
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP]] = FOREVER
     return c
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import FOREVER, V_BREAKAWAY, V_STICK_SPEED, V_STRIBECK, V_STRIBECK_SPEED
+from twin.slots import FOREVER, V_BREAKAWAY, V_HELD, V_STICK_SPEED, V_STRIBECK, V_STRIBECK_SPEED
 
 _BREAKAWAY = Parameter(
     name="breakaway",
@@ -59,17 +59,23 @@ def _falling(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_STRIBECK_SPEED] = values[1]
 
 
+def _held_stem(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_HELD] = values[0] * c.design.compliance
+    c.valve[V_STICK_SPEED] = values[1]
+
+
 EFFECT = Effect(
     name="stiction",
     stage="actuator",
     claim="The stem sticks until the pressure exceeds sliding friction by the breakaway, then slips.",
     equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed; "
-    "falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
+    "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck)",
     forms=(
         Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
         Form("one_jump", (_BREAKAWAY,), _one_jump),
+        Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_SUPPLY
+from twin.slots import EP_CLIP, EP_SUPPLY
 
 _SUPPLY = Parameter(
     name="supply",
@@ -24,12 +24,16 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_SUPPLY] = values[0]
 
 
+def _clip(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_CLIP] = values[0]
+
+
 EFFECT = Effect(
     name="supply_saturation",
     stage="ep",
     claim="Pressure cannot exceed what the air supply gives.",
-    equations="dp/dt = (min(u, supply) - p) / tau",
+    equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply",
     source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators)",
-    forms=(Form("ceiling", (_SUPPLY,), _apply),),
+    forms=(Form("ceiling", (_SUPPLY,), _apply), Form("cut_off", (_SUPPLY,), _clip)),
     twins=("ep_calibration",),
 )

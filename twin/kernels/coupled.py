@@ -13,6 +13,7 @@ from logs.recording import FloatArray
 from twin.slots import (
     FOREVER,
     V_BREAKAWAY,
+    V_HELD,
     V_IN_MOTION,
     V_RATE_CLOSE,
     V_RATE_OPEN,
@@ -151,6 +152,9 @@ def coupled_pass(
             new = _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1])
             new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
             new = max(stops[2], min(stops[3], new))
+            if c[V_HELD] > 0.0:
+                slipped = abs(new_after - x) > c[V_HELD]
+                new = x if stuck and not slipped else new
             speed = abs(new - x) / h
             stuck = (stuck and not slipped) or speed < c[V_STICK_SPEED]
             travelled += abs(new - x)

@@ -12,6 +12,7 @@ from logs.recording import FloatArray
 from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
+    EP_CLIP,
     EP_DEAD_S,
     EP_GAIN,
     EP_RATE_DOWN,
@@ -42,7 +43,7 @@ def ep_kernel(
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
         goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
-    bounded = c[EP_BAND_MODE] >= 3.0 or c[EP_RATE_UP] < FOREVER or c[EP_RATE_DOWN] < FOREVER
+    bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP]) < FOREVER
     (_follow_bounded if bounded else _follow)(time_s, offsets, goal, c, p0, out)
 
 
@@ -132,7 +133,7 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     new = goal if tau_s <= 0.0 else goal + (p - goal) * np.exp(-h / tau_s)
     if mode == 4.0:
         new = min(new, v - c[EP_BAND]) if v > p else max(new, v + c[EP_BAND])
-    bounded: float = max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new))
+    bounded: float = min(c[EP_CLIP], max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new)))
     return bounded
 
 

@@ -26,6 +26,7 @@ from twin.slots import (
     V_FORCE_CREEP_TAU_S,
     V_HARD_HIGH,
     V_HARD_LOW,
+    V_HELD,
     V_HIGH,
     V_IN_MOTION,
     V_LOW,
@@ -44,7 +45,7 @@ from twin.slots import (
     V_WEAR,
 )
 
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK]
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD]
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
