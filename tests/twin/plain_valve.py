@@ -33,6 +33,7 @@ class PlainValve:
     hold_band: float = 0.0
     pressure_rate: float = inf
     supply: float = inf
+    cut_off: float = inf
     a1: float = 8.78
     a2: float = 5.82
     k1: float = 0.19
@@ -47,6 +48,8 @@ class PlainValve:
     high: float = 0.5625
     in_motion: bool = False
     breakaway: float = 0.0
+    held: float = 0.0  # distance up to which a stem at rest stays, and the speed below which it rests
+    stick_speed: float = 0.0
     second_lag: float = 0.0
     creep: float = 0.0
     creep_tau: float = 30.0
@@ -67,7 +70,7 @@ class PlainValve:
         x = slow = core = x0
         lagged = self.reading(x, 0.0)
         out_p, out_y = [p], [self.reading(x, 0.0)]
-        wanted = set(rows.tolist())
+        wanted, rests = set(rows.tolist()), True
         for i, u in enumerate(fine.tolist(), start=1):
             t = i * step_s
             held = u if abs(u - held) > self.hold_band else held
@@ -75,8 +78,9 @@ class PlainValve:
             w = self._play(p, x if self.in_motion else w, t)
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
             tau = self.tau_close if v > x else self.tau_open
-            x += min(max((v - x) / tau, -self.rate), self.rate) * step_s
-            x = min(max(x, self.low), self.high)
+            speed = min(max((v - x) / tau, -self.rate), self.rate)
+            rests = self.held > 0.0 and (rests or abs(speed) < self.stick_speed) and abs(v - x) <= self.held
+            x = x if rests else min(max(x + speed * step_s, self.low), self.high)
             slow += (x - slow) * step_s / self.creep_tau
             stem = (1.0 - self.creep) * x + self.creep * slow
             core = max(stem - self.sensor_play / 2, min(stem + self.sensor_play / 2, core))
@@ -91,7 +95,7 @@ class PlainValve:
         tau = self.ep_tau * (self.rise if goal > p else self.fall)
         new = goal + (p - goal) * exp(-step_s / tau)
         reach = self.pressure_rate * step_s
-        return max(p - reach, min(p + reach, new))
+        return min(max(p - reach, min(p + reach, new)), self.cut_off)
 
     def _play(self, p: float, w: float, t: float) -> float:
         """The next play output: on the closing curve at least, on the opening curve at most, else where it was."""
