@@ -14,6 +14,7 @@ from dataclasses import asdict, dataclass
 import numpy as np
 
 from sim_device.physics.imperfection import choose
+from sim_device.physics.positioner.loop import advance
 from sim_device.physics.thesis.plant import IMPERFECTIONS
 from sim_device.physics.thesis.record import DesignNumbers, settings, start_state
 from sim_device.valve import Outputs
@@ -48,10 +49,10 @@ class PositionerValve:
         self.settings = settings(IMPERFECTIONS, design, choose(IMPERFECTIONS, effects), noise)
         self.state = start_state(seed)
         self._now_s: float | None = None
+        # compiled here and not at the first request, whose master would not wait for it
+        advance(self.settings, self.state.copy(), self._pilot_settings, self._pilot_state.copy(), 0.0, 0.0)
 
     def advance(self, to_time_s: float, command: float) -> Outputs:
-        from sim_device.physics.positioner.loop import advance
-
         duration_s = 0.0 if self._now_s is None else max(to_time_s - self._now_s, 0.0)
         self._now_s = to_time_s if self._now_s is None else max(to_time_s, self._now_s)
         pressure_psi, position_in = advance(

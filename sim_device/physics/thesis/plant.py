@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from hal.errors import BadInput
 from sim_device.physics.imperfection import Imperfection, choose
 from sim_device.physics.thesis import command_line, converter, friction, gauge, reading, spring, stem
+from sim_device.physics.thesis.loop import advance
 from sim_device.physics.thesis.record import DesignNumbers, settings, start_state
 from sim_device.valve import Outputs
 
@@ -32,10 +33,10 @@ class ThesisValve:
         self.settings = settings(IMPERFECTIONS, design, choose(IMPERFECTIONS, effects), noise)
         self.state = start_state(seed)
         self._now_s: float | None = None
+        # compiled here and not at the first request, whose master would not wait for it
+        advance(self.settings, self.state.copy(), 0.0, 0.0)
 
     def advance(self, to_time_s: float, command: float) -> Outputs:
-        from sim_device.physics.thesis.loop import advance
-
         duration_s = 0.0 if self._now_s is None else max(to_time_s - self._now_s, 0.0)
         self._now_s = to_time_s if self._now_s is None else max(to_time_s, self._now_s)
         pressure_psi, position_in = advance(self.settings, self.state, float(command), duration_s)

@@ -91,7 +91,7 @@ def stroke(q: Any, s: Any, excess: float, closing: bool) -> float:
     if q.thermal_spring > 0.0:
         k *= 1.0 + q.thermal_spring * math.sin(2.0 * math.pi * (s.time / _HEATING_PERIOD_S + uniform(s.seed, PHASE, 2)))
     turn = 1.0 + (0.5 if closing else -0.5) * q.spring_asymmetry
-    if q.spring_asymmetry_form == 0:
+    if q.spring_asymmetry_form == 0 or q.spring_asymmetry == 0.0:
         x = k * turn * excess
     else:
         x = 0.5 * q.travel + k * turn * (excess - 0.5 * q.travel / q.compliance)
