@@ -37,14 +37,26 @@ def sharpen_timer() -> None:
         ctypes.CDLL(None).prctl(_PR_SET_TIMERSLACK, 1, 0, 0, 0)
 
 
-def emit(data: bytes, start_s: float, pace: Pace, clock: Clock, write: Callable[[bytes], None]) -> None:
+def emit(
+    data: bytes,
+    start_s: float,
+    pace: Pace,
+    clock: Clock,
+    write: Callable[[bytes], None],
+    early_s: float = 0.0,
+) -> None:
     """Writes byte k of `data` when its last bit would have crossed the wire: `start_s` + (k + 1) characters.
 
-    Deadlines are absolute, so a late wake-up delays no later byte.
+    Deadlines are absolute, so a late wake-up delays no later byte. For the last byte, which ends the frame, it wakes
+    `early_s` before and watches the clock: a UART is not late either. That needs a clock that runs.
     """
     sent = 0
     while sent < len(data):
-        clock.sleep_until(start_s + (sent + 1) * pace.char_s)
+        due_s = start_s + (sent + 1) * pace.char_s
+        last = sent == len(data) - 1
+        clock.sleep_until(due_s - early_s if last else due_s)
+        while last and early_s and clock.now_s() < due_s:
+            pass
         due = int((clock.now_s() - start_s) / pace.char_s + 1e-9)
         due = max(sent + 1, min(due, len(data)))
         write(data[sent:due])

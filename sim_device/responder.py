@@ -14,6 +14,8 @@ from sim_device.framer import RequestFramer
 from sim_device.line import Line
 from sim_device.pacing import Pace, emit, sharpen_timer
 
+_WAKE_EARLY_S = 150e-6  # what a thread needs to wake up, at most, on a machine with nothing else to do
+
 
 class Stop:
     """Wakes every thread that waits, whether it waits for bytes or for time."""
@@ -122,7 +124,7 @@ class Responder:
         if self._pace is None:
             _write(fd, reply)
         else:
-            emit(reply, start_s, self._pace, self._clock, lambda piece: _write(fd, piece))
+            emit(reply, start_s, self._pace, self._clock, lambda piece: _write(fd, piece), _WAKE_EARLY_S)
 
 
 def _write(fd: int, data: bytes) -> None:

@@ -24,20 +24,6 @@ class LinearValve:
         return Outputs(pressure_psi=command, position_in=command / 100.0, supply_psi=80.0, temperature_c=21.5)
 
 
-class SteadyClock:
-    """A clock that moves by one step whenever somebody looks: for code that only measures."""
-
-    def __init__(self, step_s: float) -> None:
-        self._now_s, self._step_s = 0.0, step_s
-
-    def now_s(self) -> float:
-        self._now_s += self._step_s
-        return self._now_s
-
-    def sleep_until(self, time_s: float) -> None:
-        self._now_s = max(self._now_s, time_s)
-
-
 @pytest.fixture
 def valve() -> LinearValve:
     return LinearValve()

@@ -8,6 +8,20 @@ from hal.clock import SteppedClock
 from sim_device.pacing import Pace, emit
 
 
+class SteadyClock:
+    """A clock that moves by one step whenever somebody looks."""
+
+    def __init__(self, step_s: float) -> None:
+        self._now_s, self._step_s = 0.0, step_s
+
+    def now_s(self) -> float:
+        self._now_s += self._step_s
+        return self._now_s
+
+    def sleep_until(self, time_s: float) -> None:
+        self._now_s = max(self._now_s, time_s)
+
+
 class LateClock(SteppedClock):
     """Wakes up `late_s` after it was told to."""
 
@@ -36,6 +50,13 @@ def test_every_byte_arrives_when_its_last_bit_has_crossed_the_wire() -> None:
     emit(b"abcd", 2.0, Pace(9600), clock, lambda piece: arrived.append((clock.now_s(), piece)))
     assert b"".join(piece for _, piece in arrived) == b"abcd"
     assert [time_s for time_s, _ in arrived] == pytest.approx([2.0 + k * 10 / 9600 for k in (1, 2, 3, 4)])
+
+
+def test_the_last_byte_is_waited_for_with_open_eyes() -> None:
+    clock, arrived = SteadyClock(1e-6), []
+    emit(b"ab", 0.0, Pace(9600), clock, lambda piece: arrived.append((clock.now_s(), piece)), early_s=150e-6)
+    assert [piece for _, piece in arrived] == [b"a", b"b"]
+    assert 2 * 10 / 9600 <= arrived[-1][0] < 2 * 10 / 9600 + 5e-6
 
 
 def test_a_late_wake_up_delays_no_later_byte() -> None:
