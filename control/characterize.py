@@ -19,6 +19,8 @@ LEAST_DWELL_S = 2.0
 TAIL_SHARE = 0.3  # the last part of a dwell that is averaged
 STOP_SHARE = 0.02  # of the range of positions: closer to an end than this is at a stop
 FEWEST_POINTS = 4
+VAGUE_ONSET = 0.05  # of the range of pressures
+SETTLED_TAUS = 2.5  # a tail that begins later than so many time constants is corrected for what is left to move
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,27 +89,39 @@ def find_dwells(recording: Recording) -> Dwells:
     return Dwells(table[:, 0], table[:, 1:3], *table[:, 3:].T)
 
 
-def at_rest(dwells: Dwells, tau_s: float, delay_s: float) -> FloatArray:
-    """Where the stem would have come to rest, shape (m,), when the lag `tau_s` was still at work in the tails.
+@dataclass(frozen=True, slots=True)
+class Settling:
+    """What is known of how the stem comes to rest: its lag, the converter's before it, its top speed."""
 
-    `delay_s` is what passes before the stem begins to move: the converter's lag.
-    """
-    begin, end = np.maximum(dwells.tail_s - delay_s, 0.0).T
+    tau_s: float
+    delay_s: float
+    rate_limit: float
+
+    def waits_s(self, moved: FloatArray) -> FloatArray:
+        """How long the exponential end of a motion is put off: by the converter, and by the rate limit."""
+        limited_s = np.abs(moved) / self.rate_limit - self.tau_s
+        return np.asarray(self.delay_s + np.maximum(np.nan_to_num(limited_s), 0.0))
+
+
+def at_rest(dwells: Dwells, settling: Settling) -> FloatArray:
+    """Where the stem would have come to rest, shape (m,), when its lag was still at work in the tails."""
+    tau_s = settling.tau_s
+    begin, end = np.maximum(dwells.tail_s - settling.waits_s(dwells.moved)[:, None], 0.0).T
     reach = np.maximum(end - begin, 1e-9)
     left = tau_s * (np.exp(-begin / tau_s) - np.exp(-end / tau_s)) / reach
     moved = np.where(np.isfinite(dwells.moved), dwells.moved, 0.0)
     return np.asarray(dwells.position + moved * left / (1.0 - np.minimum(left, 0.9)))
 
 
-def characterize(recordings: list[Recording], tau_s: float = 0.0, delay_s: float = 0.0) -> BacklashCurves:
+def characterize(recordings: list[Recording], settling: Settling | None = None) -> BacklashCurves:
     """The curves through the dwells of all recordings (same units).
 
-    A dwell counts when the stem moved towards it by more than the noise and had come to rest. With `tau_s` (and
-    `delay_s`) known, the little that was left to move is added.
+    A dwell counts when the stem moved towards it by more than the noise and had come to rest. With `settling`
+    known, the little that was left to move is added.
     """
     found = [find_dwells(recording) for recording in recordings]
     pressure = np.concatenate([d.pressure for d in found])
-    position = np.concatenate([at_rest(d, tau_s, delay_s) if tau_s > 0.0 else d.position for d in found])
+    position = np.concatenate([at_rest(d, settling) if settling else d.position for d in found])
     moved = np.concatenate([d.moved for d in found])
     drift = np.concatenate([d.drift for d in found])
     if position.size < FEWEST_POINTS:
@@ -118,6 +132,9 @@ def characterize(recordings: list[Recording], tau_s: float = 0.0, delay_s: float
     inside = (position > low + STOP_SHARE * reach + 3 * noise) & (position < low + (1 - STOP_SHARE) * reach - 3 * noise)
     least = max(4.0 * noise, 0.004 * reach)
     settled = np.abs(drift) < np.maximum(3.0 * noise, 0.1 * np.abs(moved))
+    if settling is not None:
+        free_s = np.concatenate([d.tail_s[:, 0] - settling.waits_s(d.moved) for d in found])
+        settled &= free_s > SETTLED_TAUS * settling.tau_s
     notes = []
     curves: list[Curve | None] = []
     for name, mask in (("closing", moved > least), ("opening", moved < -least)):
@@ -125,6 +142,9 @@ def characterize(recordings: list[Recording], tau_s: float = 0.0, delay_s: float
         curve = fit_curve(pressure[chosen], position[chosen]) if chosen.sum() >= FEWEST_POINTS else None
         if curve is None:
             notes.append(f"{name} curve: {int(chosen.sum())} settled dwells on it, at least {FEWEST_POINTS} are needed")
+        elif curve.onset.half_width > VAGUE_ONSET * np.ptp(pressure):
+            notes.append(f"{name} curve: its {int(chosen.sum())} settled dwells do not lie on one line")
+            curve = None
         curves.append(curve)
     return BacklashCurves(curves[0], curves[1], tuple(notes))
 

@@ -10,15 +10,16 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from control.characterize import characterize, reading_noise
+from control.characterize import Settling, characterize, reading_noise
 from control.design import DesignModel
-from control.identify_interval import Interval, covariance
+from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
 from control.identify_model import lagged, make_grid
 from control.identify_pressure import PressureStage, fit_pressure
 from control.identify_result import Estimate, Identified, quality_of
+from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
-from control.identify_valve import Freedom, Track, ValveFit, fit_valve, jacobian, refit_separate
+from control.identify_valve import Freedom, Track, ValveFit, fit_valve, refit_separate
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording
 
@@ -41,14 +42,14 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
         stage, fine_s, fine = _pressure(recording, base.ep_tau_s, notes)
         if stage is not None:
             stages.append(stage)
-        tracks += _tracks(recording, fine_s, fine, notes)
+        tracks += _tracks(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
     if not tracks:
         raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
     fit, freedom = fit_valve(tracks)
     residual = fit.residual(tracks)
     _check_fit(residual, tracks, recordings)
     facts = Facts(base, unit_p, unit_x, _ep_tau(stages), fit, freedom, tracks)
-    spread, freedom_rows = covariance(jacobian(tracks, fit, freedom), residual)
+    spread, freedom_rows = spread_of(tracks, fit, freedom)
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
     estimates += _slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design)
     estimates += _other_ways(list(recordings), design, notes)
@@ -129,7 +130,9 @@ def _pressure(
     return stage, grid.fine_time_s, stage.fine
 
 
-def _tracks(recording: Recording, fine_s: FloatArray, fine: FloatArray, notes: list[str]) -> list[Track]:
+def _tracks(
+    recording: Recording, fine_s: FloatArray, fine: FloatArray, doubts: Sequence[FloatArray], notes: list[str]
+) -> list[Track]:
     """The record cut at its gaps: what the valve did meanwhile nobody knows."""
     breaks = [] if recording.gap_before is None else np.flatnonzero(recording.gap_before).tolist()
     tracks = []
@@ -141,7 +144,8 @@ def _tracks(recording: Recording, fine_s: FloatArray, fine: FloatArray, notes: l
             continue
         grid = make_grid(recording.time_s[start:stop])
         pressure = np.interp(grid.fine_time_s, fine_s, fine)
-        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good))
+        doubt = tuple(np.interp(grid.fine_time_s, recording.time_s, each) for each in doubts)
+        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good, doubt))
     return tracks
 
 
@@ -174,7 +178,7 @@ def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequen
 def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str, design: DesignModel) -> list[Estimate]:
     """k1 and k2 from a fit that lets them differ, and the thesis's k_eq, their mean."""
     found, separate = refit_separate(tracks, fit, freedom)
-    spread, rows = covariance(jacobian(tracks, found, separate), found.residual(tracks))
+    spread, rows = spread_of(tracks, found, separate)
     k1, k2 = float(found.numbers[2]), float(found.numbers[3])
     both = spread[2:4, 2:4]
     reach = _student(rows) * np.sqrt([both[0, 0], both[1, 1], 0.25 * both.sum()])
@@ -191,14 +195,15 @@ def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str,
 def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[str]) -> list[Estimate]:
     """What steady dwells and the 63 % rule say, for comparison with the fit."""
     unit_p, unit_x = design.pressure_unit, design.position_unit
-    curves = characterize(recordings, design.tau_s, design.ep_tau_s)
+    settling = Settling(design.tau_s, design.ep_tau_s, design.rate_limit)
+    curves = characterize(recordings, settling)
     estimates = []
     for curve, onset, slope in ((curves.closing, "a1", "k1"), (curves.opening, "a2", "k2")):
         if curve is not None:
             k = curve.compliance
             estimates.append(Estimate(f"{onset} (curves)", curve.onset.value, curve.onset, unit_p, "curves"))
             estimates.append(Estimate(f"{slope} (curves)", k.value, k, f"{unit_x}/{unit_p}", "curves"))
-    steps = time_constant_63(recordings, design.ep_tau_s, design.tau_s, design.rate_limit, design.travel)
+    steps = time_constant_63(recordings, settling, design.travel)
     if steps.tau_s is not None:
         said = f"{steps.raw_s.size} steps, {np.median(steps.raw_s):.2f} s with the E/P lag"
         estimates.append(Estimate("tau (63 %)", steps.tau_s.value, steps.tau_s, "s", "63 % rule", said))

@@ -19,6 +19,7 @@ WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 BLIND_S = 0.5  # readings closer than this share their noise and do not count as unseen
 TAU_RANGE_S = (0.005, 60.0)
 GAIN_TOLERANCE = 0.005
+DOUBTS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,6 +31,7 @@ class PressureStage:
     zero: float
     rms: float
     width_s: float
+    doubts: FloatArray  # what the smoothed pressure may be off by, shape (DOUBTS, n): noise like that of the readings
     fine: FloatArray  # the pressure that drives the play, on the fine grid
 
     @property
@@ -66,7 +68,15 @@ def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_
     correction = moving_average(grid.time_s, rest, good, width_s)
     fine = shape.fine + np.interp(np.arange(grid.n_fine), grid.first, correction)
     rms = float(np.sqrt(np.mean(rest[good] ** 2)))
-    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, fine)
+    doubts = _doubts(grid.time_s, np.where(good, rest - correction, 0.0), good, width_s)
+    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, doubts, fine)
+
+
+def _doubts(time_s: FloatArray, noise: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:
+    """The readings' own noise, turned to begin elsewhere and smoothed like the readings: it keeps its colour."""
+    shifts = np.linspace(0.1, 0.9, DOUBTS // 2) * noise.size
+    turned = [moving_average(time_s, np.roll(noise, int(shift)), good, width_s) for shift in shifts]
+    return np.array([sign * each for each in turned for sign in (1.0, -1.0)])
 
 
 @dataclass(frozen=True, slots=True)

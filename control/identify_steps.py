@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.characterize import Dwells, at_rest, find_dwells, reading_noise
+from control.characterize import Dwells, Settling, at_rest, find_dwells, reading_noise
 from control.identify_interval import Interval
 from logs.recording import FloatArray, Recording
 
@@ -29,17 +29,16 @@ class StepTimes:
     tau_s: Interval | None
 
 
-def time_constant_63(
-    recordings: list[Recording], ep_tau_s: float, tau_s: float, rate_limit: float, travel: float
-) -> StepTimes:
+def time_constant_63(recordings: list[Recording], settling: Settling, travel: float) -> StepTimes:
     """The median over all steps that count, with an interval from their order statistics.
 
-    `tau_s` is the fitted value, needed to know which dwells are long enough and where they end.
+    `settling` is what the fit says, needed to know which dwells are long enough and where they end.
     """
+    ep_tau_s = settling.delay_s
     found: list[float] = []
     for recording in recordings:
         dwells = find_dwells(recording)
-        found += _times(recording, dwells, ep_tau_s, tau_s, min(0.6 * rate_limit * tau_s, 0.5 * travel))
+        found += _times(recording, dwells, settling, min(0.6 * settling.rate_limit * settling.tau_s, 0.5 * travel))
     raw_s = np.array(found)
     if raw_s.size < FEWEST_STEPS:
         return StepTimes(raw_s, None)
@@ -50,9 +49,10 @@ def time_constant_63(
     return StepTimes(raw_s, Interval(float(np.median(each)), float(each[low]), float(each[high])))
 
 
-def _times(recording: Recording, dwells: Dwells, ep_tau_s: float, tau_s: float, largest: float) -> list[float]:
+def _times(recording: Recording, dwells: Dwells, settling: Settling, largest: float) -> list[float]:
+    tau_s, ep_tau_s = settling.tau_s, settling.delay_s
     noise = reading_noise(recording)
-    ends = at_rest(dwells, tau_s, ep_tau_s)
+    ends = at_rest(dwells, settling)
     times = []
     for i in range(2, dwells.command.size):
         step = ends[i] - ends[i - 1]
@@ -63,19 +63,24 @@ def _times(recording: Recording, dwells: Dwells, ep_tau_s: float, tau_s: float, 
             continue
         start_s = dwells.start_s[i]
         rows = (recording.time_s >= start_s) & (recording.time_s <= start_s + dwells.tail_s[i, 1])
-        crossed = _crossing(recording.time_s[rows], (ends[i] - recording.position[rows]) / step)
-        if crossed is not None and crossed > start_s:
-            times.append(crossed - start_s)
+        elapsed_s = recording.time_s[rows] - start_s
+        left = (ends[i] - recording.position[rows]) / step
+        # Rows are chosen by when they should lie there: choosing them by their noisy value would bend the line.
+        expected = np.exp(-np.maximum(elapsed_s - ep_tau_s, 0.0) / tau_s)
+        near = (expected > WINDOW[0]) & (expected < WINDOW[1]) & (left > 0.0)
+        crossed = _crossing(elapsed_s[near], left[near])
+        if crossed is not None:
+            times.append(crossed)
     return times
 
 
-def _crossing(time_s: FloatArray, left: FloatArray) -> float | None:
-    """When the share of a step that is left, `left`, has fallen to 1/e, by a line through its logarithm."""
-    near = (left > WINDOW[0]) & (left < WINDOW[1])
-    if near.sum() < 2 or np.ptp(time_s[near]) <= 0.0:
+def _crossing(elapsed_s: FloatArray, left: FloatArray) -> float | None:
+    """When the share of a step that is left, `left`, falls to 1/e, by a line through its logarithm; None if never."""
+    if elapsed_s.size < 2 or np.ptp(elapsed_s) <= 0.0:
         return None
-    slope, start = np.polyfit(time_s[near] - time_s[0], np.log(left[near]), 1)
-    return float(time_s[0] + (-1.0 - start) / slope) if slope < 0.0 else None
+    slope, start = np.polyfit(elapsed_s, np.log(left), 1)
+    crossed = (-1.0 - start) / slope if slope < 0.0 else -1.0
+    return float(crossed) if crossed > 0.0 else None
 
 
 def without_lag(time_63_s: float, ep_tau_s: float) -> float:

@@ -30,6 +30,7 @@ class Track:
     pressure: FloatArray
     position: FloatArray
     good: np.ndarray
+    doubts: tuple[FloatArray, ...] = ()  # what the pressure may be off by, on the grid
 
     @property
     def start(self) -> float:
