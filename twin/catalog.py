@@ -17,7 +17,7 @@ def effects() -> dict[str, Effect]:
     """All effects by name, in alphabetical order; a file that defines none is a defect and raises."""
     found: dict[str, Effect] = {}
     for path in sorted(_FOLDER.glob("[a-z]*.py")):
-        effect = import_module(f"twin.effects.{path.stem}").EFFECT
+        effect = getattr(import_module(f"twin.effects.{path.stem}"), "EFFECT", None)
         if not isinstance(effect, Effect) or effect.name != path.stem:
             raise TypeError(f"{path.name} must define EFFECT, an Effect called {path.stem!r}")
         found[effect.name] = effect

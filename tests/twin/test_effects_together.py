@@ -1,0 +1,54 @@
+"""Several effects at once: finite, within the stops, and the same in whatever order they stand in the file."""
+
+from __future__ import annotations
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.catalog import effects
+from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
+from twin.timegrid import make_grid
+
+DESIGN = DesignModel()
+TIME_S = np.arange(400) * 0.2
+COMMAND = np.repeat(np.random.default_rng(2).uniform(4.5, 13.0, 20), 20)
+
+
+@st.composite
+def several(draw: st.DrawFn) -> list[Inserted]:
+    """Two to four different effects, each in any form at any of its starts."""
+    names = draw(st.lists(st.sampled_from(sorted(effects())), min_size=2, max_size=4, unique=True))
+    found = []
+    for name in names:
+        form = draw(st.sampled_from(effects()[name].forms))
+        found.append(Inserted(name, form, tuple(draw(st.sampled_from(p.starts)) for p in form.parameters)))
+    return found
+
+
+def chain(inserted: list[Inserted]) -> tuple[FloatArray, FloatArray]:
+    """Stem on the fine grid and reading at the rows."""
+    plant = Plant(DESIGN, tuple(inserted))
+    grid = make_grid(TIME_S, 0.05)
+    c = plant.coefficients(float(TIME_S[-1]))
+    pressure = pressure_response(c, grid, COMMAND, float(COMMAND[0]))
+    stem = stem_response(c, grid, pressure, 0.2, 0.2)
+    return stem, reading_response(c, grid, stem)
+
+
+@settings(max_examples=60, deadline=None)
+@given(several())
+def test_any_effects_together(inserted: list[Inserted]) -> None:
+    stem, reading = chain(inserted)
+    assert np.isfinite(reading).all()
+    beyond = 0.011 * DESIGN.travel  # a stop may be up to 1 % further out in the starts of reduced_travel
+    assert stem.min() >= -beyond
+    assert stem.max() <= DESIGN.travel + beyond
+
+
+@settings(max_examples=30, deadline=None)
+@given(several())
+def test_order_does_not_matter(inserted: list[Inserted]) -> None:
+    np.testing.assert_allclose(chain(inserted)[1], chain(inserted[::-1])[1], atol=1e-9)

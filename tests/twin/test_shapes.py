@@ -1,0 +1,29 @@
+"""Shapes over the position grid: heights, zeros, and what detrending takes away."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from twin.shapes import bow, bump, detrended, swing
+
+XI = np.linspace(0.0, 1.0, 65)
+
+
+def test_bow_and_swing_are_zero_at_the_ends_and_one_high() -> None:
+    assert bow(XI)[[0, 32, 64]] == pytest.approx([0.0, 1.0, 0.0])
+    assert swing(XI)[[0, 32, 64]] == pytest.approx([0.0, 0.0, 0.0], abs=1e-12)
+    assert np.abs(swing(np.linspace(0.0, 1.0, 1001))).max() == pytest.approx(1.0, abs=0.002)
+
+
+def test_bump_is_one_high_at_its_centre_and_narrow() -> None:
+    assert bump(XI, 0.5, 0.1)[32] == 1.0
+    assert bump(np.array([0.6]), 0.5, 0.1)[0] == pytest.approx(np.exp(-0.5))
+    assert np.isfinite(bump(XI, 0.5, 0.0)).all()
+
+
+def test_detrended_shapes_say_nothing_about_offset_and_compliance() -> None:
+    rest = detrended(np.square(XI) + 3.0 * XI + 2.0, XI)
+    assert np.mean(rest) == pytest.approx(0.0, abs=1e-12)
+    assert rest @ XI == pytest.approx(0.0, abs=1e-9)
+    assert rest == pytest.approx(detrended(np.square(XI), XI))
