@@ -100,9 +100,13 @@ def _separator(lines: list[str]) -> str:
 
 
 def _decimal(text: bytes, separator: str) -> str:
-    if separator == "," or not re.search(rb"\d,\d", text):
+    """The comma, where whole cells are numbers with a comma and none is one with a point. Dates do not count."""
+    if separator == ",":
         return "."
-    return "." if re.search(rb"\d\.\d", text.split(b"\n", 2)[-1]) else ","
+    mark = rb"[ \t]" if separator == " " else re.escape(separator).encode()
+    cell = rb'(?m)(?:^|%b)[ "]*[-+]?\d*%b\d+(?:[eE][-+]?\d+)?[ "]*(?:%b|\r?$)'
+    commas, points = (re.search(cell % (mark, sign, mark), text) for sign in (b",", rb"\."))
+    return "," if commas and not points else "."
 
 
 def _is_number(cell: str) -> bool:

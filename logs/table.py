@@ -12,8 +12,10 @@ from typing import Any
 import numpy as np
 
 from hal.errors import BadInput
+from logs.calendar_text import parser_of
 from logs.dialect import MISSING, Dialect, clean, sniff, split
 from logs.recording import DataNote, FloatArray
+from logs.rows import check_quotes, line_of, why_not
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,26 +46,38 @@ class Table:
             return np.full(len(array), np.nan)
         if pa.types.is_string(array.type) or pa.types.is_large_string(array.type):
             return self._parsed(header, array)
-        return np.asarray(array.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False), dtype=np.float64)
+        try:
+            return np.asarray(array.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False), dtype=np.float64)
+        except pa.ArrowInvalid as error:
+            raise BadInput(f"{self.where}: column '{header}' holds text ({error}); it must hold numbers") from error
+        except pa.ArrowNotImplementedError as error:
+            raise BadInput(f"{self.where}: column '{header}' holds {array.type}; it must hold numbers") from error
 
     def is_calendar(self, header: str) -> bool:
         """Whether a column holds dates or times of day, which become seconds by themselves."""
         import pyarrow as pa
 
-        return bool(pa.types.is_temporal(self.column(header).type))
+        array = self.column(header)
+        if pa.types.is_string(array.type):  # one cell that is no date makes text of them all
+            return parser_of(next((str(cell) for cell in array if cell.is_valid), "")) is not float
+        return bool(pa.types.is_temporal(array.type))
 
     def _parsed(self, header: str, array: Any) -> FloatArray:
         """A column that came as text because of a cell or two: the missing ones are NaN, anything else is refused."""
         values = np.full(len(array), np.nan)
+        parse: Callable[[str], float] | None = None
         for row, cell in enumerate(array.to_pylist()):
             text = (cell or "").strip()
             if text in MISSING:
                 continue
+            parse = parse or parser_of(text)
             try:
-                values[row] = float(text)
+                values[row] = parse(text)
             except ValueError as error:
+                shown = text.partition("\n")[0][:40]
+                kind = "a number" if parse is float else "a time like those above it"
                 raise BadInput(
-                    f"{self.where}: {self.locate(row)}: '{text}' in column '{header}' is not a number; "
+                    f"{self.where}: {self.locate(row)}: '{shown}' in column '{header}' is not {kind}; "
                     "correct the cell, or leave it empty where the value is missing"
                 ) from error
         return values
@@ -95,6 +109,7 @@ def _read_csv(path: Path, data: bytes) -> Table:
     if dialect.separator == " ":
         text = re.sub(rb"[ \t]+", b" ", re.sub(rb"(?m)^[ \t]+|[ \t\r]+$", b"", text))
     names = _unique(dialect.headers, where)
+    check_quotes(data, dialect, where)
     text, notes = _without_torn_tail(text, dialect)
     try:
         table = csv.read_csv(
@@ -106,7 +121,7 @@ def _read_csv(path: Path, data: bytes) -> Table:
             ),
         )
     except pa.ArrowInvalid as error:
-        raise BadInput(f"{where}: {_why(str(error), data, dialect)}") from error
+        raise BadInput(f"{where}: {why_not(str(error), data, dialect)}") from error
     if table.num_rows == 0:
         raise BadInput(f"{where}: there is no row under the header; a recording needs at least 2")
     units = dict(zip(names, dialect.units_row, strict=False))
@@ -115,7 +130,7 @@ def _read_csv(path: Path, data: bytes) -> Table:
         headers=names,
         rows=table.num_rows,
         column=lambda header: _retyped(table.column(header), dialect.decimal),
-        locate=lambda row: _line_of(data, row, dialect),
+        locate=lambda row: line_of(data, row, dialect),
         has_header=dialect.has_header,
         header_units={name: unit.strip("[]() ") for name, unit in units.items()},
         notes=notes,
@@ -199,33 +214,3 @@ def _unique(headers: Sequence[str], where: str) -> tuple[str, ...]:
     if twice:
         raise BadInput(f"{where}: two columns are called '{twice[0]}'; rename one of them")
     return tuple(named)
-
-
-def _why(message: str, data: bytes, dialect: Dialect) -> str:
-    """The reader's complaint, with the line of the file in place of its own count."""
-    wrong = re.search(r"Row #(\d+): Expected (\d+) columns, got (\d+)", message)
-    expected = len(dialect.headers)
-    for number, line in _sample_lines(data, dialect):
-        cells = len(split(line, dialect.separator))
-        if cells != expected:
-            return f"line {number} of the file: {cells} cells, the header has {expected} ('{line[:60]}'); correct it"
-    return f"row {wrong[1]}: {message}" if wrong else message
-
-
-def _line_of(data: bytes, row: int, dialect: Dialect) -> str:
-    for count, (number, _) in enumerate(_sample_lines(data, dialect)):
-        if count == row:
-            return f"row {row + 1} (line {number})"
-    return f"row {row + 1}"
-
-
-def _sample_lines(data: bytes, dialect: Dialect) -> list[tuple[int, str]]:
-    """Line number in the file and text of every row of samples; only used to explain an error."""
-    encoding = "utf-16" if data[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8"
-    lines = data.decode(encoding, errors="replace").splitlines()
-    kept = [
-        (number + 1, line)
-        for number, line in enumerate(lines)
-        if line.strip() and not re.match(r"[ \t\ufeff]*(#|%|//)", line)
-    ]
-    return kept[dialect.skipped_rows :]

@@ -110,6 +110,15 @@ def test_dates_and_times_of_day_become_seconds(tmp_path: Path) -> None:
     recording = load(tmp_path, clock)
     assert np.diff(recording.time_s) == pytest.approx([1.0, 1.0, 1.0])
     assert "ran over" in said(recording)
+    fine = "time,command_psi,position_in\n10:00:59.9,3,0\n10:01:00.15,4,0.1\n"
+    assert load(tmp_path, fine).time_s == pytest.approx([36_059.9, 36_060.15])
+    spoilt = "time,command_psi,position_in\n2024-01-01 10:00:00.5,3,0\n,3,0\n2024-01-01 10:00:01,4,0.1\n"
+    assert np.diff(load(tmp_path, spoilt).time_s) == pytest.approx([0.5])
+    dotted = "Zeit;command_psi;position_in\n31.01.2024 23:59:59,5;3;0\n01.02.2024 00:00:00,25;4,5;0,1\n"
+    recording = load(tmp_path, dotted, mapping="time=Zeit")
+    assert np.diff(recording.time_s) == pytest.approx([0.75]) and recording.command.tolist() == [3.0, 4.5]
+    zone = "time,command_psi,position_in\n2024-01-01T10:00:00.5+02:00,3,0\n2024-01-01T10:00:01+02:00,4,0.1\n"
+    assert load(tmp_path, zone).time_s == pytest.approx([0.0, 0.5])
 
 
 def test_missing_values_are_noted_and_kept_or_held(tmp_path: Path) -> None:
@@ -200,6 +209,12 @@ def test_commands_that_take_effect_after_their_row_move_to_the_row_after(tmp_pat
         (HEAD + "0,3,3,0\n1,4,3,0\n", {"mapping": "tempo=zeit"}, ["tempo=zeit", "not ROLE=VALUE"]),
         (HEAD + "0,3,3,0\n1,4,3,0\n", {"units": "position=furlong3"}, ["furlong3", "not a unit of position"]),
         (HEAD + "0,3,3,0\n1,4,3,0\n", {"units": "command=mm"}, ["'mm'", "not a unit of pressure"]),
+        (
+            "time,command,position\n2024-01-01 10:00:00,3,0\n2024-13-01 10:00:01,3,0\n",
+            {},
+            ["row 2 (line 3)", "'2024-13-01 10:00:01'", "is not a time like those above"],
+        ),
+        (HEAD + '0,3,"3,0\n1,4,3,0\n2,4,3,0\n', {}, ["line 2", "a quote that is not closed"]),
         (b"\x7fELF\x00\x01\x02", {}, ["neither a text file nor Parquet"]),
         (b"PAR1 and then nonsense", {}, ["damaged Parquet"]),
     ],
@@ -221,6 +236,25 @@ def test_a_file_that_is_not_there(tmp_path: Path) -> None:
 def test_a_last_line_cut_off_by_a_crash_is_left_out_and_said(tmp_path: Path) -> None:
     recording = load(tmp_path, HEAD + "0,3,3,0\n1,4,3.2,0.1\n2,4,3.")
     assert recording.n == 2 and "the last line is cut off | left out | 1" in said(recording)
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_spoilt_file_is_read_or_refused_but_never_breaks_the_reader(tmp_path: Path, seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    whole = HEAD + "".join(f"{k / 10:.1f},{3 + k % 5},{3.5 + k % 5},{k / 100}\n" for k in range(30))
+    bits = ["NaN", "", "inf", "abc", "1e400", ",", ";", "\n", "\t", '"', "#", "\x00", "é", "12:30", "\r", "1,5", " "]
+    for _ in range(40):
+        text = list(whole)
+        for at in rng.integers(0, len(text), rng.integers(1, 4)):
+            text[at] = bits[rng.integers(len(bits))]
+        (tmp_path / "file.csv").write_bytes("".join(text).encode(["utf-8", "latin-1", "utf-16"][rng.integers(3)]))
+        try:
+            recording = load_recording(tmp_path / "file.csv")
+        except BadInput as error:
+            assert "file.csv" in str(error) and "\n" not in str(error)
+            continue
+        assert np.all(np.diff(recording.time_s) > 0) and np.isfinite(recording.command).all()
+        assert recording.n == recording.position.size == recording.command.size
 
 
 def test_a_file_without_header_is_mapped_by_number(tmp_path: Path) -> None:

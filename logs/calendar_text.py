@@ -1,0 +1,35 @@
+"""Times of day and dates that come as text, as seconds."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from datetime import UTC, datetime
+
+_CLOCK = re.compile(r"(\d{1,3}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
+_DATE = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\S+")
+_DOTTED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4}) +(\S+)")  # day first, as everywhere that dates have dots
+
+
+def parser_of(text: str) -> Callable[[str], float]:
+    """How a column is read whose first cell is `text`: as times of day, as dates (ISO, or day.month.year), or as numbers."""
+    if _CLOCK.fullmatch(text):
+        return clock_seconds
+    return date_seconds if _DATE.fullmatch(text) or _DOTTED.fullmatch(text) else float
+
+
+def clock_seconds(text: str) -> float:
+    """Seconds since midnight. Raises: `ValueError` for what is no time of day."""
+    found = _CLOCK.fullmatch(text)
+    if found is None:
+        raise ValueError(text)
+    return 3600.0 * float(found[1]) + 60.0 * float(found[2]) + float(found[3].replace(",", "."))
+
+
+def date_seconds(text: str) -> float:
+    """Seconds since 2000, in UTC where the text names no zone. Raises: `ValueError` for what is no such date."""
+    dotted = _DOTTED.fullmatch(text)
+    if dotted is not None:
+        text = f"{dotted[3]}-{int(dotted[2]):02d}-{int(dotted[1]):02d}T{dotted[4]}"
+    when = datetime.fromisoformat(text.replace(",", "."))
+    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - 946_684_800.0
