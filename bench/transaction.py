@@ -33,10 +33,10 @@ def main() -> None:
     report(taken, [master.name for master in masters])
 
 
-def measure(masters: list[Master], rounds: int) -> dict[tuple[str, str], list[float]]:
-    """Durations [s] by (master, kind of transaction)."""
+def measure(masters: list[Master], rounds: int) -> dict[tuple[str, str], list[list[float]]]:
+    """Durations [s], round by round, by (master, kind of transaction)."""
     jobs = [(master, kind) for master in masters for kind in master.kinds]
-    taken: dict[tuple[str, str], list[float]] = {(master.name, kind): [] for master, kind in jobs}
+    taken: dict[tuple[str, str], list[list[float]]] = {(master.name, kind): [] for master, kind in jobs}
     chance = random.Random(1)
     for number in range(rounds + 1):
         chance.shuffle(jobs)
@@ -44,21 +44,33 @@ def measure(masters: list[Master], rounds: int) -> dict[tuple[str, str], list[fl
             slow = isinstance(master, (PymodbusSync, MinimalModbus))
             durations = master.durations_s((kind, 16, 4), SLOW_BLOCK if slow else BLOCK)
             if number:  # the first round warms up
-                taken[(master.name, kind)] += durations
+                taken[(master.name, kind)].append(durations)
     return taken
 
 
-def report(taken: dict[tuple[str, str], list[float]], names: list[str]) -> None:
+def report(taken: dict[tuple[str, str], list[list[float]]], names: list[str]) -> None:
+    """All repetitions, and the quietest round of each: what remains when the machine has nothing else to do."""
     yardstick = LibModbusMaster.name if LibModbusMaster.name in names else Ours.name
-    print(f"{'master':20} {'':6} {'n':>6} {'median us':>10} {'p99 us':>10} {'x ' + yardstick.split()[0]:>12}")
+    titles = ("master", "kind", "n", "median us", "p99 us", "ratio", "quietest us", "ratio")
+    print("{:20} {:5} {:>6} {:>10} {:>9} {:>6} {:>12} {:>6}".format(*titles))
     for kind in ("FC03", "FC16", "FC23"):
-        base = 1e6 * statistics.median(taken[(yardstick, kind)])
+        base, quiet_base = _middles(taken[(yardstick, kind)])
         for name in names:
-            durations = sorted(taken.get((name, kind), []))
-            if durations:
-                middle = 1e6 * statistics.median(durations)
-                p99 = 1e6 * durations[int(0.99 * (len(durations) - 1))]
-                print(f"{name:20} {kind:6} {len(durations):6d} {middle:10.1f} {p99:10.1f} {middle / base:12.2f}")
+            rounds = taken.get((name, kind))
+            if not rounds:
+                continue
+            every = sorted(duration for durations in rounds for duration in durations)
+            middle, quiet = _middles(rounds)
+            print(
+                f"{name:20} {kind:5} {len(every):6d} {middle:10.1f} {1e6 * every[int(0.99 * (len(every) - 1))]:9.1f} "
+                f"{middle / base:6.2f} {quiet:12.1f} {quiet / quiet_base:6.2f}"
+            )
+
+
+def _middles(rounds: list[list[float]]) -> tuple[float, float]:
+    """Median of everything, and the least median of a round [us]."""
+    everything = [duration for durations in rounds for duration in durations]
+    return 1e6 * statistics.median(everything), 1e6 * min(statistics.median(durations) for durations in rounds)
 
 
 if __name__ == "__main__":
