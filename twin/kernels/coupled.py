@@ -117,6 +117,14 @@ def _half_band(wide: float, travelled: float, speed: float, c: FloatArray) -> fl
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -> float:
+    """The stem after `h` seconds on its way from x to `new`, no faster than its rates and within its stops."""
+    slow = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
+    bounded: float = max(stops[2], min(stops[3], slow))
+    return bounded
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def coupled_pass(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -149,14 +157,11 @@ def coupled_pass(
             extra = c[V_BREAKAWAY] if stuck else 0.0
             new_w, slipped = _play_step(force[f], grown, extra, at_once, stops, tables, plays, elements)
             new_after = _toward(after, w, new_w, lags[2])
-            new = _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1])
-            new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
-            new = max(stops[2], min(stops[3], new))
+            new = _bounded(x, _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1]), h, c, stops)
             if c[V_HELD] > 0.0:
                 slipped = abs(new_after - x) > c[V_HELD]
                 new = x if stuck and not slipped else new
             speed = abs(new - x) / h
             stuck = (stuck and not slipped) or speed < c[V_STICK_SPEED]
-            travelled += abs(new - x)
-            x, w, after = new, new_w, new_after
+            x, w, after, travelled = new, new_w, new_after, travelled + abs(new - x)
             out[f] = x
