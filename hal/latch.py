@@ -32,7 +32,7 @@ class Latch:
     def engaged(self) -> str | None:
         """Why nothing may move; None: it may. A file that cannot be read counts as an emergency stop."""
         try:
-            text = self.path.read_text(encoding="utf-8")
+            text = self.path.read_bytes()
         except FileNotFoundError:
             return None
         except OSError as error:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from dataclasses import dataclass
 from types import TracebackType
@@ -122,9 +123,13 @@ class SafeBench:
         self._trip = f"emergency stop: {reason}"
         stop = getattr(self._bench, "emergency_stop", None)
         safe = bool(stop()) if stop is not None else self._bench.make_safe(self._trip)
-        if self._latch is not None:
-            self._latch.engage(self._trip)
+        self._engage(self._trip)
         return safe
+
+    def _engage(self, reason: str) -> None:
+        if self._latch is not None:
+            with contextlib.suppress(OSError):  # a full disk must not come between us and the valve
+                self._latch.engage(reason)
 
     def _allowed(self, command: float) -> float:
         limits = self._limits
@@ -173,8 +178,7 @@ class SafeBench:
 
     def _shout(self, reason: str, error: BaseException | None) -> None:
         text = f"the valve did NOT confirm its safe command after: {reason}. Shut off its supply and look at it"
-        if self._latch is not None:
-            self._latch.engage(text)
+        self._engage(text)
         raise BenchFault(text) from error
 
 

@@ -143,7 +143,7 @@ def _why_not(name: str, error: Exception) -> str:
         return f"no permission to open port {name}; add your user to the group that owns it (often dialout)"
     if number in (errno.EBUSY, errno.EAGAIN) or "exclusively lock" in str(error):
         return f"port {name} is busy: another program has it open; close that one first"
-    if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR, errno.ENXIO) or "tty" in str(error):
+    if number in (errno.ENOTTY, errno.EINVAL, errno.EISDIR, errno.ENXIO) or "configure port" in str(error):
         return f"{name} is not a serial port; `lostmotion ports` lists the ports of this machine"
     return f"port {name} cannot be opened: {error}"
 

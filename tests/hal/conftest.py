@@ -1,4 +1,4 @@
-"""A slave that nobody trusts: registers that hold their own address, on a real pseudo-terminal, with scripted faults."""
+"""A slave that nobody trusts: registers hold their own address, on a real pseudo-terminal, with scripted faults."""
 
 from __future__ import annotations
 

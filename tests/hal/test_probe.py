@@ -1,0 +1,22 @@
+from __future__ import annotations
+
+import pytest
+
+from hal.errors import PortFault
+from hal.framing import seal
+from hal.port import parse_port
+from hal.probe import probe, settings_to_try
+
+
+def test_units_that_answer_are_found_and_the_others_are_not(slave) -> None:
+    right = slave.reply
+    slave.reply = lambda f: right(f) if f[0] == 2 else seal(3, b"\x83\x02") if f[0] == 3 else b""
+    found = list(probe(parse_port(slave.port), settings_to_try([9600], ["N"]), range(1, 5), timeout_s=0.02, rounds=3))
+    assert [(f.unit, f.baud, f.answer) for f in found] == [(2, 9600, "register 0 read"), (3, 9600, "exception 2")]
+    assert all(0.0 <= f.turnaround_ms <= f.worst_ms for f in found)
+    assert all(f[1] == 3 for f in slave.requests), "a search must not write"
+
+
+def test_a_port_that_is_not_there() -> None:
+    with pytest.raises(PortFault, match="there is no port"):
+        list(probe(parse_port("/dev/ttyNOPE"), settings_to_try([9600], ["N"]), [1]))

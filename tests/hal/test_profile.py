@@ -1,0 +1,141 @@
+"""Profiles: what a good one means, and one clear sentence for every bad one."""
+
+from __future__ import annotations
+
+import copy
+import tomllib
+from typing import Any
+
+import pytest
+
+from hal.errors import BadInput
+from hal.profile import FOLDER, Serial, load_profile, parse_profile, profile_names
+
+VIRTUAL = tomllib.loads((FOLDER / "virtual.toml").read_text(encoding="utf-8"))
+
+
+def changed(path: str, value: Any) -> dict[str, Any]:
+    content = copy.deepcopy(VIRTUAL)
+    *parents, key = path.split(".")
+    place = content
+    for parent in parents:
+        place = place[parent]
+    if value is None:
+        del place[key]
+    else:
+        place[key] = value
+    return content
+
+
+def test_the_virtual_device_is_as_its_specification_says() -> None:
+    profile = load_profile("virtual")
+    position = profile.signals.position
+    assert profile.position_in(position.value(0)) == pytest.approx(0.28125, abs=1e-5)
+    assert profile.position_signal(0.5625) == pytest.approx(8.0)
+    assert profile.command_unit == "psi"
+    assert profile.device_of(position).fc23
+
+
+@pytest.mark.parametrize("name", profile_names())
+def test_every_profile_loads_and_says_where_its_registers_come_from(name) -> None:
+    profile = load_profile(name)
+    assert profile.name == name
+    assert profile.source
+    for place, register in profile.every_register().items():
+        device = profile.device_of(register)
+        assert register.source or device.source, f"{place} has no source"
+        assert profile.wire_address(register) >= 0
+
+
+def test_names_and_paths(tmp_path) -> None:
+    copied = tmp_path / "mine.toml"
+    copied.write_text((FOLDER / "virtual.toml").read_text(encoding="utf-8"), encoding="utf-8")
+    assert load_profile(copied) == load_profile("virtual")
+    assert load_profile(str(copied)) == load_profile("virtual")
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "sentence"),
+    [
+        ("serial.boud", 9600, "serial.boud: unknown key; remove it or correct its spelling"),
+        ("signals.position.colour", "red", "signals.position.colour: unknown key"),
+        ("signals.command", None, "signals.command: missing; add it"),
+        ("signals.position.raw", [7, 7], "signals.position: raw \\[7.0, 7.0\\] is an impossible scale"),
+        ("devices.bench.id", 248, "devices.bench.id: Input should be less than or equal to 247"),
+        ("devices.bench.identity.objects", {"vendor": "x"}, "unknown identification object 'vendor'"),
+        ("devices.bench.word_order", "ACBD", "devices.bench.word_order: "),
+        ("serial.parity", "X", "serial.parity: "),
+        ("safe_command", 21.0, "safe_command 21 is outside limits"),
+        ("limits.command_min", 20.0, "limits: command_min 20 must be below command_max 20"),
+        ("limits.position_min_in", 1.0, "position_min_in 1 must be below position_max_in"),
+        ("signals.pressure.unit", "bar", "signals.pressure.unit is 'bar'"),
+        ("signals.position.device", "other", "signals.position.device 'other' is not one of bench"),
+        ("calibration", None, r"signals.position is in 'V': a \[calibration\] to in is needed"),
+        ("calibration.points", [[0, 0], [0, 1]], "calibration: the signal column of points must rise or fall"),
+        ("signals.command.type", "u16", "cannot carry"),
+    ],
+)
+def test_every_bad_profile_gets_one_sentence_with_file_and_key(path, value, sentence) -> None:
+    content = changed(path, value)
+    if path == "signals.command.type":
+        content["signals"]["command"] |= {"raw": [0, 65535], "eng": [0.0, 10.0]}  # ends at 10 psi, limits at 20
+    with pytest.raises(BadInput, match=f"profile mine.toml: .*{sentence}") as caught:
+        parse_profile(content, "mine.toml")
+    assert "\n" not in str(caught.value)
+
+
+def test_two_devices_need_to_be_told_apart() -> None:
+    content = changed("devices.second", {"id": 1})
+    for register in [*content["signals"]["aux"].values(), *_registers(content)]:
+        register["device"] = "bench"
+    with pytest.raises(BadInput, match="unit id 1 is given twice"):
+        parse_profile(content, "x")
+    content["devices"]["second"]["id"] = 2
+    assert set(parse_profile(content, "x").devices) == {"bench", "second"}
+    del content["signals"]["command"]["device"]
+    with pytest.raises(BadInput, match=r"signals.command.device '' is not one of bench, second"):
+        parse_profile(content, "x")
+
+
+def _registers(content: dict[str, Any]) -> list[dict[str, Any]]:
+    return [register for name, register in content["signals"].items() if name != "aux"]
+
+
+def test_addresses_counted_from_one() -> None:
+    content = changed("devices.bench.address_base", 1)
+    with pytest.raises(BadInput, match=r"signals.command.address 0 does not exist on a device with address_base = 1"):
+        parse_profile(content, "x")
+    for register in [*content["signals"]["aux"].values(), *_registers(content)]:
+        register["address"] += 1
+    profile = parse_profile(content, "x")
+    assert profile.wire_address(profile.signals.command) == 0
+
+
+def test_files_that_cannot_be_read(tmp_path) -> None:
+    with pytest.raises(BadInput, match=r"there is no profile 'virtul'; there are .*virtual"):
+        load_profile("virtul")
+    with pytest.raises(BadInput, match=r"none\.toml cannot be read: No such file"):
+        load_profile(tmp_path / "none.toml")
+    broken = tmp_path / "broken.toml"
+    broken.write_text("name = \n", encoding="utf-8")
+    with pytest.raises(BadInput, match=r"broken\.toml is not valid TOML: .*line 1"):
+        load_profile(broken)
+    broken.write_bytes(b"\xff\xfe")
+    with pytest.raises(BadInput, match="is not valid TOML"):
+        load_profile(broken)
+
+
+@pytest.mark.parametrize(
+    ("baud", "parity", "stop_bits", "char_us", "silence_us"),
+    # The table of the physical wire limit: t3.5 is 3.5 characters up to 19200 baud and 1750 us above.
+    [
+        (9600, "N", 1, 1041.7, 3646),
+        (9600, "E", 1, 1145.8, 4010),
+        (19200, "N", 1, 520.8, 1823),
+        (38400, "E", 1, 286.5, 1750),
+    ],
+)
+def test_character_and_silence_times(baud, parity, stop_bits, char_us, silence_us) -> None:
+    serial = Serial(baud=baud, parity=parity, stop_bits=stop_bits)
+    assert 1e6 * serial.char_s == pytest.approx(char_us, abs=0.05)
+    assert 1e6 * serial.silence_s == pytest.approx(silence_us, abs=0.6)
