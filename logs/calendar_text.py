@@ -12,7 +12,7 @@ _DOTTED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4}) +(\S+)")  # day first, as e
 
 
 def parser_of(text: str) -> Callable[[str], float]:
-    """How a column is read whose first cell is `text`: as times of day, as dates (ISO, or day.month.year), or as numbers."""
+    """How a column with a first cell like `text` is read: times of day, dates (ISO, or day.month.year) or numbers."""
     if _CLOCK.fullmatch(text):
         return clock_seconds
     return date_seconds if _DATE.fullmatch(text) or _DOTTED.fullmatch(text) else float

@@ -30,7 +30,8 @@ class DataNote:
 class Recording:
     """Samples in time order; every array is float64 of shape (n,).
 
-    `command[i]` is the command in force over the interval that ends at `time_s[i]` (timing "before").
+    `command[i]` is the command in force over the interval that ends at `time_s[i]` (timing "before"). Loading turns
+    a file with timing "after" into one with "before", so that only "before" and "unknown" have to be dealt with.
     `pressure` is None where it was not measured; NaN marks a missing sample; `target` is None in open loop.
     `gap_before[i]` is True where samples are missing between i-1 and i, so that the state there is uncertain.
     """
