@@ -11,7 +11,13 @@ from sim_device.physics.offline import record
 from tests.sim_device.physics.excitation import lively
 
 # The shared vocabulary of causes, in the order of its table.
-EFFECTS = ["dead_time", "ep_calibration", "ep_deadband", "fill_exhaust_asymmetry", "ep_rate_limit", "supply_saturation", "stiction", "spring_asymmetry", "nonlinear_spring", "asymmetric_damping", "friction_in_motion", "creep", "distributed_hysteresis", "position_dependent_friction", "friction_drift", "reduced_travel", "additional_lag", "flow_force", "lvdt_calibration", "lvdt_nonlinearity", "lvdt_drift", "linkage_lost_motion", "sensor_lag", "stale_samples", "sensor_quantization", "sensor_dropouts"]
+EFFECTS = {
+    *("dead_time", "ep_calibration", "ep_deadband", "fill_exhaust_asymmetry", "ep_rate_limit", "supply_saturation"),
+    *("stiction", "spring_asymmetry", "nonlinear_spring", "asymmetric_damping", "friction_in_motion", "creep"),
+    *("distributed_hysteresis", "position_dependent_friction", "friction_drift", "reduced_travel", "additional_lag"),
+    *("flow_force", "lvdt_calibration", "lvdt_nonlinearity", "lvdt_drift", "linkage_lost_motion", "sensor_lag"),
+    *("stale_samples", "sensor_quantization", "sensor_dropouts"),
+}
 NUMBERS = ["deadband", "offset", "compliance", "tau", "rate_limit", "ep_tau"]
 
 
@@ -22,7 +28,7 @@ def test_the_plants_are_found_as_files() -> None:
 @pytest.mark.parametrize("plant", ["thesis", "reference"])
 def test_both_families_know_every_effect_every_design_number_and_six_outsiders(plant: str) -> None:
     known = imperfections(plant)
-    assert {item.name for item in known if not item.outsider} == set(EFFECTS)
+    assert {item.name for item in known if not item.outsider} == EFFECTS
     assert sum(item.outsider for item in known) >= 6
     assert [item.name for item in parameters(plant)] == [f"parameter:{name}" for name in NUMBERS]
 
