@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from hal.clock import Clock, RealClock
-from hal.errors import PortFault, WireFault
+from hal.errors import WireFault
 from hal.line import RtuLine
 from hal.pdu import read_registers
 from hal.port import PortName
 from hal.profile import Serial
-from hal.transport import make_transport
+from hal.transport import SettingRefused, make_transport
 
 BAUDS = (9600, 19200, 38400, 57600, 115200)
 
@@ -51,19 +51,15 @@ def probe(
 
     Only function 3 is sent, which changes nothing. `said` is told what is being tried. Raises: `PortFault`.
     """
-    clock, opened, settings = clock or RealClock(), False, list(settings)
-    last = settings[-1] if settings else None
+    clock = clock or RealClock()
     for serial in settings:
         said(f"{serial.baud} 8{serial.parity}{serial.stop_bits}")
         line = RtuLine(make_transport(port, serial), serial, clock, name=port.text)
         try:
             line.open()
-        except PortFault:
-            if last is serial and not opened:
-                raise
+        except SettingRefused:
             said(f"  not possible on {port.text}")
             continue
-        opened = True
         try:
             for unit in units:
                 found = _ask(line, unit, timeout_s, rounds)

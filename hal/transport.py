@@ -16,6 +16,10 @@ from hal.port import PortName
 from hal.profile import Serial
 
 
+class SettingRefused(PortFault):
+    """The port is there, and its driver cannot do these line settings."""
+
+
 class Transport(Protocol):
     """A line of bytes. Raises: `PortFault` from everything but `close` when the port is gone."""
 
@@ -91,7 +95,7 @@ class SerialTransport(FdTransport):
             port = serial.Serial(self.name, s.baud, parity=s.parity, stopbits=s.stop_bits, timeout=0, exclusive=True)
         except termios.error as error:
             line = f"{s.baud} 8{s.parity}{s.stop_bits}"
-            raise PortFault(f"port {self.name} cannot be set to {line}; its driver refuses that") from error
+            raise SettingRefused(f"port {self.name} cannot be set to {line}; its driver refuses that") from error
         except (serial.SerialException, OSError, ValueError) as error:
             raise PortFault(_why_not(self.name, error)) from error
         with contextlib.suppress(AttributeError, ValueError, OSError):  # not every adapter has such a mode

@@ -34,7 +34,7 @@ def test_objects_come_in_several_answers(bus) -> None:
 def test_the_right_device_passes_and_another_does_not(bus) -> None:
     right = Device(id=1, identity=Identity(objects={"product_code": "X-1"}))
     assert check_identity(bus, right, "p")["vendor_name"] == "ACME"
-    with pytest.raises(BenchFault, match="unit 1 on p is not the device .*: product_code is 'X-1', not 'Y'"):
+    with pytest.raises(BenchFault, match=r"unit 1 on p is not the device .*: product_code is 'X-1', not 'Y'"):
         check_identity(bus, Device(id=1, identity=Identity(objects={"product_code": "Y"})), "p")
 
 

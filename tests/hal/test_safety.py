@@ -1,46 +1,16 @@
-"""The safety layer, limit by limit, on both sides of every limit, and every way out."""
+"""The safety layer, limit by limit, on both sides of every limit."""
 
 from __future__ import annotations
 
 import math
-import threading
+from dataclasses import replace
 
 import pytest
 
-from hal.clock import SteppedClock
-from hal.errors import BenchFault, PortFault, SafetyTrip, WireFault
-from hal.fake import FakeBench
-from hal.latch import Latch
+from hal.errors import SafetyTrip
 from hal.profile import Limits
-from hal.safety import SafeBench, describe_way_out
 from hal.sample import Quality
-from hal.signals import Stopped
-
-LIMITS = Limits(
-    command_min=1.0,
-    command_max=15.0,
-    slew_per_s=None,
-    position_min_in=-0.05,
-    position_max_in=0.6,
-    pressure_max_psi=18.0,
-    max_missing=3,
-    max_age_s=1.0,
-)
-
-
-class Rig:
-    """A fake bench whose readings the test chooses, inside the safety layer."""
-
-    def __init__(self, limits: Limits = LIMITS, latch: Latch | None = None, **fake) -> None:
-        self.clock = SteppedClock(100.0)
-        self.pressure, self.position = 5.0, 0.1
-        self.fake = FakeBench(self.clock, response=lambda time_s, command: (self.pressure, self.position), **fake)
-        self.safe = SafeBench(self.fake, limits, self.clock, latch=latch)
-
-    def tick(self, command: float = 5.0, dt_s: float = 0.1):
-        sample = self.safe.exchange(command)
-        self.clock.sleep_until(self.clock.now_s() + dt_s)
-        return sample
+from tests.hal.safety_rig import LIMITS, Rig
 
 
 @pytest.mark.parametrize(
@@ -86,10 +56,8 @@ def test_slew_starts_from_what_the_device_holds() -> None:
 def test_the_limit_of_untrusted_readings(quality) -> None:
     rig = Rig(LIMITS.model_copy(update={"max_age_s": 99.0}), script=dict.fromkeys((1, 2, 3, 5, 6, 7, 8), quality))
     with pytest.raises(SafetyTrip, match="no trusted reading in 4 ticks in a row \\(limit 3\\)"), rig.safe:
-        for _ in range(8):  # three bad ones, a good one, three bad ones
+        for _ in range(20):  # a good one, three bad ones, a good one, four bad ones
             rig.tick()
-        assert rig.fake.reasons == []
-        rig.tick()
     assert len(rig.fake.commands) == 9
 
 
@@ -102,11 +70,10 @@ def test_saturated_readings_are_readings() -> None:
 
 def test_stale_readings_trip_by_age_and_not_by_number() -> None:
     rig = Rig(LIMITS.model_copy(update={"max_missing": 2}), script=dict.fromkeys(range(1, 99), Quality.STALE))
-    with pytest.raises(SafetyTrip, match=r"the last fresh reading is 1\.1 s old \(limit 1 s\)"), rig.safe:
-        for _ in range(11):
-            rig.tick(dt_s=0.1)
-        assert rig.fake.reasons == [], "1.0 s old is not too old"
-        rig.tick()
+    with pytest.raises(SafetyTrip, match=r"the last fresh reading is 1\.12 s old \(limit 1 s\)"), rig.safe:
+        for _ in range(20):
+            rig.tick(dt_s=0.125)
+    assert len(rig.fake.commands) == 10, "1.0 s old is not too old"
 
 
 @pytest.mark.parametrize(
@@ -129,9 +96,9 @@ def test_limits_of_readings_trip_on_the_second_tick_beyond(name, limit, step, se
             setattr(rig, name, limit)
             rig.tick()
         setattr(rig, name, limit + step)
-        rig.tick()
-        assert rig.fake.reasons == []
-        rig.tick()
+        for _ in range(5):
+            rig.tick()
+    assert len(rig.fake.commands) == 13, "the second tick beyond the limit, and not a spike"
 
 
 def test_limits_that_are_not_given_do_not_act() -> None:
@@ -164,123 +131,26 @@ def test_after_a_trip_nothing_is_sent_any_more() -> None:
         rig.tick(5.0)
 
 
-WAYS_OUT = [
-    (None, "success", "normal end"),
-    (KeyboardInterrupt(), "abort", "Ctrl-C"),
-    (Stopped("SIGINT"), "abort", "Ctrl-C"),
-    (Stopped("SIGTERM"), "abort", "terminated (SIGTERM)"),
-    (Stopped("SIGHUP"), "abort", "terminal closed (SIGHUP)"),
-    (SafetyTrip("too far"), "fail", "safety trip: too far"),
-    (PortFault("gone"), "fail", "PortFault: gone"),
-    (ValueError("a defect"), "fail", "ValueError: a defect"),
-    (SystemExit(3), "fail", "SystemExit: 3"),
-]
-
-
-@pytest.mark.parametrize(("error", "status", "reason"), WAYS_OUT)
-def test_every_way_out_leads_to_the_safe_command_and_is_remembered(error, status, reason) -> None:
+def test_one_untrusted_signal_is_enough() -> None:
     rig = Rig()
+    exchange = rig.fake.exchange
 
-    def job() -> None:
-        with rig.safe:
-            rig.tick(7.0)
-            if error is not None:
-                raise error
+    def blind(command: float):
+        sample = exchange(command)
+        assert sample.pressure is not None
+        return replace(sample, pressure=replace(sample.pressure, quality=Quality.SENTINEL))
 
-    if error is None:
-        job()
-    else:
-        with pytest.raises(type(error)):
-            job()
-    assert rig.fake.reasons[0] == reason
-    assert (rig.fake.held, rig.fake.open) == (0.0, False)
-    way = rig.safe.way_out
-    assert way is not None
-    assert (way.status, way.reason, way.safe) == (status, reason, True)
-    assert describe_way_out(error) == (status, reason)
+    rig.fake.exchange = blind  # type: ignore[method-assign]
+    with pytest.raises(SafetyTrip, match="no trusted reading in 4 ticks"), rig.safe:
+        for _ in range(20):
+            rig.tick()
 
 
-def test_a_bench_fault_in_the_middle_of_an_exchange_leads_to_the_safe_command() -> None:
-    rig = Rig(script={1: WireFault("broken")})
-    with pytest.raises(WireFault), rig.safe:
-        rig.tick()
-        rig.tick()
-    assert rig.fake.reasons[0] == "WireFault: broken"
-    assert not rig.fake.open
-
-
-@pytest.mark.parametrize("error", [None, KeyboardInterrupt(), ValueError("x")])
-def test_an_unconfirmed_safe_command_is_said_loudly(error, tmp_path) -> None:
-    rig = Rig(confirms_safe=False, latch=Latch(tmp_path / "stop.json"))
-
-    def job() -> None:
-        with rig.safe:
-            if error is not None:
-                raise error
-
-    with pytest.raises(BenchFault, match="did NOT confirm its safe command") as caught:
-        job()
-    assert caught.value.__cause__ is error
-    assert not rig.fake.open
-    assert rig.safe.way_out is not None
-    assert not rig.safe.way_out.safe
-    again = Rig(latch=Latch(tmp_path / "stop.json"))
-    with pytest.raises(SafetyTrip, match="not acknowledged"):
-        again.safe.__enter__()
-    assert again.fake.entered == 0, "nothing may be opened before somebody has looked"
-
-
-def test_an_emergency_stop_holds_until_it_is_acknowledged(tmp_path) -> None:
-    latch = Latch(tmp_path / "state" / "stop.json")
-    rig = Rig(latch=latch)
-    with pytest.raises(SafetyTrip, match="emergency stop: smoke"), rig.safe:
-        assert rig.safe.emergency_stop("smoke")
-        rig.tick()
-    with pytest.raises(SafetyTrip, match="emergency stop: smoke"):
-        Rig(latch=latch).safe.__enter__()
-    latch.acknowledge()
-    with Rig(latch=latch).safe as safe:
-        assert safe.exchange(5.0).commanded_psi == 5.0
-
-
-def test_an_emergency_stop_by_another_program_stops_the_next_tick(tmp_path) -> None:
-    latch = Latch(tmp_path / "stop.json")
-    rig = Rig(latch=latch)
-    with pytest.raises(SafetyTrip, match="the other terminal"), rig.safe:
-        rig.tick()
-        latch.engage("the other terminal")
-        rig.tick()
-    assert len(rig.fake.commands) == 1
-
-
-def test_the_dead_mans_thread_acts_when_the_loop_stalls() -> None:
-    rig = Rig()
-    stalled = threading.Event()
-    make_safe = rig.fake.make_safe
-
-    def watched(reason: str) -> bool:
-        stalled.set()
-        return make_safe(reason)
-
-    rig.fake.make_safe = watched  # type: ignore[method-assign]
-    rig.safe = SafeBench(rig.fake, LIMITS, rig.clock, deadman_s=0.02)
-    with pytest.raises(SafetyTrip, match="the loop stalled"), rig.safe:
-        rig.tick(9.0)
-        assert stalled.wait(5.0)
-        rig.tick(9.0)
-    assert rig.fake.commands == [9.0]
-
-
-def test_a_failure_right_after_entering_leaves_the_bench_again() -> None:
-    rig = Rig()
-
-    class Broken(FakeBench):
-        @property
-        def held_command(self) -> float:
-            raise KeyboardInterrupt
-
-    bench = Broken(rig.clock)
-    with pytest.raises(KeyboardInterrupt):
-        SafeBench(bench, LIMITS, rig.clock).__enter__()
-    assert not bench.open
-    assert bench.reasons
+def test_slew_counts_from_the_safe_command_after_make_safe() -> None:
+    rig = Rig(LIMITS.model_copy(update={"slew_per_s": 10.0, "command_min": 0.0}))
+    with rig.safe:
+        rig.tick(0.1)
+        for _ in range(8):
+            rig.tick(8.0, dt_s=0.1)
+        assert rig.safe.make_safe("test")
+        assert rig.tick(8.0).commanded_psi == pytest.approx(1.0)
