@@ -17,12 +17,12 @@ from logs.recording import FloatArray
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence, nothing
 from twin.noise.model import poisson_tail
-from twin.noise.robust import robust_sigma
 
 BoolArray = npt.NDArray[np.bool_]
 
 _SIGMAS = 6.0
 _LONGEST = 3
+_JUMP = 5.0  # times the usual step from reading to reading around it
 _WINDOW = 9
 _FALSE_RATE = 1e-7  # per row, of a Gaussian reading beyond six sigma that also comes back
 
@@ -47,9 +47,8 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
         return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
     y = reading[known]
     apart = y - median_filter(y, _WINDOW, mode="nearest")
-    # corners of the motion depart from a median too: the usual departure sets the scale where it is the larger one
-    bound = _SIGMAS * max(noise_sigma, robust_sigma(apart), 1e-12)
-    false = _isolated(y, np.abs(apart) > bound, apart, bound)
+    bound = _SIGMAS * max(noise_sigma, 1e-12)
+    false = _isolated(y, np.abs(apart) > bound, bound)
     rows[known] = false
     count = int(false.sum())
     if count == 0:
@@ -69,15 +68,23 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     return Dropouts(rows, Evidence(effect, ratio, p_value, estimates), _codes(y[false]))
 
 
-def _isolated(y: FloatArray, far: BoolArray, apart: FloatArray, bound: float) -> BoolArray:
-    """Runs of at most three far samples of one sign whose outer neighbours agree with each other."""
+def _isolated(y: FloatArray, far: BoolArray, bound: float) -> BoolArray:
+    """Runs of at most three far samples that jump away from the one neighbour and back to the other.
+
+    The tip of a motion is far from a median too, but is reached and left by steps like those around it: a false
+    reading is reached and left by jumps much larger than the motion there.
+    """
     edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]]).astype(np.int8)))
     starts, stops = edges[::2], edges[1::2]
     before, after = y[np.maximum(starts - 1, 0)], y[np.minimum(stops, y.size - 1)]
-    depth = np.array([np.abs(apart[a:b]).min() for a, b in zip(starts, stops, strict=True)])
-    inner = (starts > 0) & (stops < y.size)
-    back = np.abs(after - before) < np.maximum(0.5 * depth, bound)
-    good = (stops - starts <= _LONGEST) & (back | ~inner)
+    away, back = y[starts] - before, y[stops - 1] - after
+    steps = np.abs(np.diff(y, prepend=y[:1]))
+    usual = median_filter(steps, 2 * _WINDOW + 1, mode="nearest")
+    # at an end of the record there is one neighbour only, and it decides
+    away, back = np.where(starts == 0, back, away), np.where(stops == y.size, away, back)
+    jump = np.minimum(np.abs(away), np.abs(back))
+    good = (stops - starts <= _LONGEST) & (away * back > 0.0) & (jump > np.maximum(bound, _JUMP * usual[starts]))
+    good &= np.abs(after - before) < np.maximum(0.5 * jump, bound)
     marked = np.zeros(y.size, dtype=bool)
     for start, stop in zip(starts[good], stops[good], strict=True):
         marked[start:stop] = True

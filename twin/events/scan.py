@@ -54,7 +54,9 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
     else:
         false_pressure = find_dropouts(pressure, noise.pressure.sigma).rows
         true_pressure = np.where(false_pressure, np.nan, pressure)
-        evidence["stiction"] = stick_slip(recording.time_s, clean, true_pressure, sigma)
+        evidence["stiction"] = stick_slip(
+            recording.time_s, clean, true_pressure, sigma, noise.position.correlation_samples
+        )
         memory = noise.pressure.correlation_samples
         evidence["dead_time"] = delay(recording.time_s, recording.command, true_pressure, noise.pressure.sigma, memory)
     return Events(evidence, drop.rows, false_pressure, share)

@@ -14,10 +14,10 @@ from logs.recording import FloatArray
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence, nothing
 
-_MOST = 60_000  # pairs: more change nothing but the time
+_MOST = 30_000  # pairs: more change nothing but the time
 _TINY = 1e-7
 _LOOK_S = 1.5  # how far to look for the motion, more than any refresh period to be found
-_SPREADS = (0.0, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0)  # noise differences tried, in given sigmas
+_SPREADS = (0.0, *np.geomspace(0.03, 3.0, 40))  # noise differences tried, in given sigmas
 
 
 def stale_samples(

@@ -19,6 +19,7 @@ from logs.recording import FloatArray
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence, nothing
 from twin.noise.model import poisson_tail
+from twin.where.regime import speed_sigma
 
 IntArray = npt.NDArray[np.int64]
 
@@ -38,7 +39,13 @@ class _Stop:
     jump: float
 
 
-def stick_slip(time_s: FloatArray, reading: FloatArray, pressure: FloatArray | None, noise_sigma: float) -> Evidence:
+def stick_slip(
+    time_s: FloatArray,
+    reading: FloatArray,
+    pressure: FloatArray | None,
+    noise_sigma: float,
+    correlation_samples: float = 1.0,
+) -> Evidence:
     """Evidence for `stiction` from slow ramps; `pressure` is measured, its own noise is filtered here.
 
     Estimates: `build_up` (pressure gathered during a stop, in its unit), `jump` (stem travel after it), `dwell` [s],
@@ -53,7 +60,7 @@ def stick_slip(time_s: FloatArray, reading: FloatArray, pressure: FloatArray | N
     smooth = gaussian_filter1d(_filled(reading), bell, mode="nearest")
     speed = np.gradient(smooth, time_s)
     drive = np.gradient(gaussian_filter1d(_filled(pressure), bell, mode="nearest"), time_s)
-    speed_noise = noise_sigma / (period * np.sqrt(4.0 * np.sqrt(np.pi)) * bell**1.5)
+    speed_noise = speed_sigma(noise_sigma, period, bell, correlation_samples)
     ramps = _ramps(drive, time_s)
     stops: list[_Stop] = []
     runs = 0

@@ -21,9 +21,9 @@ from twin.noise.robust import (
     robust_sigma,
     whiten,
 )
-from twin.noise.still import fast_sigma, still_pieces, taken_by_parabola
+from twin.noise.still import even_windows, fast_memory, given_back, held_windows, still_pieces, straight_windows
 
-Source = Literal["repeats", "still", "high_frequency", "none"]
+Source = Literal["repeats", "still", "straight", "high_frequency", "none"]
 
 _TAIL = 4.5  # sigmas; a Gaussian reading passes it once in 150,000
 _LEAST = 200  # samples before a source is trusted
@@ -79,7 +79,8 @@ def estimate_noise(recordings: Sequence[Recording]) -> NoiseModel:
     """Measures the noise of recordings that share a unit; uses no model and no candidate's residual.
 
     Every source is computed, the first with at least 200 samples is used: repeats of a command sequence (differences
-    over sqrt 2), still stretches (about a parabola), second differences (fast part only, taken as white).
+    over sqrt 2), still stretches (about a parabola; under a constant command or, for the position, which may rest in
+    the deadband, under any), stretches of an even command, second differences (with a first-order memory at most).
     """
     pairs = find_repeats(recordings)
     pressured = [r for r in recordings if r.pressure is not None]
@@ -91,36 +92,44 @@ def estimate_noise(recordings: Sequence[Recording]) -> NoiseModel:
 
 
 def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPair]) -> SignalNoise:
-    period = float(np.median([r.period_s for r in recordings if r.n > 1] or [float("nan")]))
-    repeated = [piece for pair in pairs if (piece := pair.difference(name)) is not None]
-    still = _still(name, recordings)
-    fast = [fast_sigma(getattr(r, name)) for r in recordings if r.n >= 3]
-    sources: dict[Source, list[FloatArray]] = {"repeats": repeated, "still": still}
-    by_source: dict[str, float] = {
-        key: robust_sigma(np.concatenate(pieces)) for key, pieces in sources.items() if _rows(pieces)
+    known = [r for r in recordings if r.n >= 3]
+    if not known:
+        return SignalNoise(0.0, 1.0, "none", 0, float("nan"))
+    period = float(np.median([r.period_s for r in known]))
+    sources: dict[Source, list[FloatArray]] = {
+        "repeats": [piece for pair in pairs if (piece := pair.difference(name)) is not None],
+        "still": _pieces(name, known, "held"),
     }
-    if fast:
-        by_source["high_frequency"] = float(np.median(fast))
-    tail_pieces = sources["still"] if _rows(sources["still"]) >= _LEAST else repeated
-    tail_p, ratio = _tails(np.concatenate(tail_pieces)) if tail_pieces else (1.0, 1.0)
+    if name == "position" and _rows(sources["still"]) < _LEAST:
+        sources["still"] = _pieces(name, known, "any")
+    sources["straight"] = _pieces(name, known, "straight")
+    by_source = {str(key): robust_sigma(np.concatenate(p)) for key, p in sources.items() if _rows(p)}
+    fast = [fast_memory(getattr(r, name)) for r in known]
+    level, phi = (float(np.median(column)) for column in zip(*fast, strict=True))
+    by_source["high_frequency"] = level
+    calm = sources["still"] if _rows(sources["still"]) >= _LEAST else sources["repeats"]
+    tail_p, ratio = _tails(np.concatenate(calm)) if calm else (1.0, 1.0)
     # a coarse reading stands still without being right: it is never better than its step allows
-    least = (lattice_step(np.concatenate([getattr(r, name) for r in recordings])) or 0.0) / sqrt(12.0)
+    least = (lattice_step(np.concatenate([getattr(r, name) for r in known])) or 0.0) / sqrt(12.0)
     for source, pieces in sources.items():
         if _rows(pieces) >= _LEAST:
             return _measured(source, pieces, period, tail_p, ratio, by_source, least)
-    sigma = max(by_source.get("high_frequency", 0.0), least)
-    source = "high_frequency" if fast else "none"
-    rows = sum(r.n for r in recordings)
-    return SignalNoise(sigma, 1.0, source, rows, period, (), sigma, tail_p, ratio, by_source)
+    sigma, rows = max(level, least), sum(r.n for r in known)
+    memory, fresh = (1.0 + phi) / (1.0 - phi), sigma * sqrt(1.0 - phi**2)
+    ar = (phi,) if phi > 0.0 else ()
+    return SignalNoise(sigma, memory, "high_frequency", rows, period, ar, fresh, tail_p, ratio, by_source)
 
 
-def _still(name: str, recordings: Sequence[Recording]) -> list[FloatArray]:
-    """Still pieces under a constant command or, if those are too few, under any."""
-    known = [r for r in recordings if r.n > 1]
-    held = [piece for r in known for piece in still_pieces(getattr(r, name), r.period_s, r.command)]
-    if _rows(held) >= _LEAST:
-        return held
-    return [piece for r in known for piece in still_pieces(getattr(r, name), r.period_s)]
+def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "any", "straight"]) -> list[FloatArray]:
+    """Residuals of one signal where the command is held, where the signal rests, or where the command is even."""
+    pieces: list[FloatArray] = []
+    for r in recordings:
+        if kind == "any":
+            starts = even_windows(r.n, r.period_s)
+        else:
+            starts = (held_windows if kind == "held" else straight_windows)(r.time_s, r.command)
+        pieces += still_pieces(getattr(r, name), r.period_s, starts, still=kind != "straight")
+    return pieces
 
 
 def _measured(
@@ -133,12 +142,13 @@ def _measured(
     least: float,
 ) -> SignalNoise:
     spread = robust_sigma(np.concatenate(pieces))
-    sigma = max(spread, least)
-    tame = [clipped(piece, spread) for piece in pieces]
-    taken = taken_by_parabola(pieces, MAX_LAG) if source == "still" else None
-    rho = autocorrelation(tame, MAX_LAG, taken)
-    tau = correlation_samples(rho)
+    rho = autocorrelation([clipped(piece, spread) for piece in pieces], MAX_LAG)
     rows = _rows(pieces)
+    if source != "repeats":
+        rho, grown = given_back(rho, [piece.size for piece in pieces])
+        spread *= grown
+    sigma = max(spread, least)
+    tau = correlation_samples(rho)
     ar, variance = autoregression(rho, rows)
     return SignalNoise(sigma, tau, source, rows, period_s, ar, sigma * sqrt(variance), tail_p, ratio, by_source)
 

@@ -30,8 +30,9 @@ def robust_sigma(values: FloatArray) -> float:
     deviation = np.abs(sample - np.median(sample))
     # with more than half of the values on one step the median deviation is 0: the mean one still is not
     sigma = 1.4826 * float(np.median(deviation)) or 1.2533 * float(np.mean(deviation))
+    most = 1.5 * sigma  # motion is an outlier of every size: the bound must not climb up along it
     for _ in range(8):
-        inside = deviation[deviation <= CLIP * sigma]
+        inside = deviation[deviation <= CLIP * min(sigma, most)]
         updated = float(np.sqrt(np.mean(np.square(inside)))) if inside.size else sigma
         if abs(updated - sigma) <= 1e-9 * sigma:
             break
@@ -45,14 +46,8 @@ def clipped(values: FloatArray, sigma: float) -> FloatArray:
     return np.clip(centred, -CLIP * sigma, CLIP * sigma) if sigma > 0 else centred
 
 
-def autocorrelation(
-    pieces: Sequence[FloatArray], max_lag: int = MAX_LAG, taken: FloatArray | None = None
-) -> FloatArray:
-    """Autocorrelation pooled over the pieces, lags 0..m with m <= `max_lag` and m < a third of the longest piece.
-
-    `taken[k]` is what a fit to the pieces took from the sum of products at lag k, in units of the variance (exact for
-    white noise); it is given back.
-    """
+def autocorrelation(pieces: Sequence[FloatArray], max_lag: int = MAX_LAG) -> FloatArray:
+    """Autocorrelation pooled over the pieces, lags 0..m with m <= `max_lag` and m < a third of the longest piece."""
     longest = max((piece.size for piece in pieces), default=0)
     lags = min(max_lag, longest // 3)
     total = np.zeros(lags + 1)
@@ -69,10 +64,7 @@ def autocorrelation(
     if lags < 0 or total[0] <= 0:
         return np.ones(1)
     covariance = total / np.maximum(pairs, 1.0)
-    rho = covariance / covariance[0]
-    if taken is not None:
-        rho[1:] += taken[1 : rho.size] / np.maximum(pairs[1:], 1.0)
-    return np.asarray(rho)
+    return np.asarray(covariance / covariance[0])
 
 
 def correlation_samples(rho: FloatArray) -> float:

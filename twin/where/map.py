@@ -51,7 +51,7 @@ def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float, s
         reading, full = _joined(pieces, lambda p: p.reading), _joined(pieces, lambda p: p.full)
         terms = two_stage_terms(reading, full, _joined(pieces, lambda p: _some(p.from_pressure)))
         stage = stage_shares(error, terms, sigma, "actuator_or_sensor", memory, seed)
-    classes = [_classes(piece, sigma, travel) for piece in pieces]
+    classes = [_classes(piece, noise, travel) for piece in pieces]
     direction = np.concatenate([c.direction for c in classes])
     regime = np.concatenate([c.regime for c in classes])
     pressure = _joined(pieces, lambda p: p.pressure)
@@ -71,9 +71,10 @@ def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float, s
     )
 
 
-def _classes(piece: WherePiece, sigma: float, travel: float) -> Regimes:
+def _classes(piece: WherePiece, noise: SignalNoise, travel: float) -> Regimes:
     reading = piece.reading if piece.use is None else np.where(piece.use, piece.reading, np.nan)
-    return classify(piece.time_s, reading, piece.full, piece.pressure, sigma, travel)
+    memory = noise.correlation_samples
+    return classify(piece.time_s, reading, piece.full, piece.pressure, noise.sigma, travel, correlation_samples=memory)
 
 
 def _joined(pieces: Sequence[WherePiece], take: Callable[[WherePiece], FloatArray]) -> FloatArray:

@@ -34,6 +34,7 @@ def classify(
     noise_sigma: float,
     travel: float,
     after_s: float = 2.0,
+    correlation_samples: float = 1.0,
 ) -> Regimes:
     """Classes of every row; `pressure` is the smoothed measured one, or the model's where none was measured.
 
@@ -45,7 +46,7 @@ def classify(
     period = float(np.median(np.diff(time_s))) if time_s.size > 1 else 1.0
     bell = max(_BELL_S / period, 1.0)
     smooth = gaussian_filter1d(_filled(reading), bell, mode="nearest")
-    speed_noise = noise_sigma / (period * np.sqrt(4.0 * np.sqrt(np.pi)) * bell**1.5)
+    speed_noise = speed_sigma(noise_sigma, period, bell, correlation_samples)
     motion = _motion(np.gradient(smooth, time_s), speed_noise, 1e-3 * travel)
     pressure_motion = np.sign(np.gradient(gaussian_filter1d(_filled(pressure), bell, mode="nearest"), time_s))
     moving = motion != 0
@@ -57,6 +58,13 @@ def classify(
     regime = np.where(moving, np.where(turned, 2, 1), np.where(at_stop, 3, 0))
     direction = np.where(motion > 0, 0, np.where(motion < 0, 1, 2))
     return Regimes(direction.astype(np.int64), regime.astype(np.int64))
+
+
+def speed_sigma(noise_sigma: float, period_s: float, bell_rows: float, correlation_samples: float = 1.0) -> float:
+    """Sigma of the speed [unit/s] taken under a bell of standard deviation `bell_rows` from such readings."""
+    white = noise_sigma / (period_s * np.sqrt(4.0 * np.sqrt(np.pi)) * bell_rows**1.5)
+    # memory raises slow noise, and no further than where the readings themselves set the speed
+    return float(white * np.sqrt(min(correlation_samples, 2.0 * bell_rows)))
 
 
 def _motion(speed: FloatArray, noise: float, least: float) -> IntArray:
