@@ -76,7 +76,7 @@ def diagnose(
     noise = estimate_noise(recordings)
     recordings, timing_notes = settled_timing(recordings, Plant(design, tuple(inserted)), noise)
     progress("noise and events", 1.0)
-    sensing = sense(recordings, noise, design.travel)
+    sensing = sense(recordings, noise, design.travel, design.rate_limit)
     case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
     result = judge(case, settings.search, settings.rules, progress)
     retuned = _retuned(case)

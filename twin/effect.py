@@ -8,7 +8,7 @@ or spreads the play; it never integrates anything itself, so no combination of e
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -133,7 +133,9 @@ class Effect:
 
     `evidence` says how the diagnosis recognises it: by the trajectory, or by events in the reading (drop-outs).
     `odds` is how common it is on a bench,
-    relative to others. `twins` are effects with nearly the same signature; `equations` and `source` are printed.
+    relative to others. `absorbs` are design numbers that have no sharp meaning beside it
+    (an asymmetry has no canonical middle). `same_as` gives, per form, the effects that no record of
+    these signals can tell from it. `twins` are effects with a similar signature; `equations` and `source` are printed.
     """
 
     name: str
@@ -145,6 +147,8 @@ class Effect:
     evidence: Evidence = "trajectory"
     twins: tuple[str, ...] = ()
     odds: float = 1.0
+    absorbs: tuple[str, ...] = ()
+    same_as: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
     def form(self, name: str) -> Form:
         """The form called `name`; raises KeyError naming the forms there are."""

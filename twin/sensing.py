@@ -37,14 +37,17 @@ class Sensing:
         return [e.false_position for e in self.events]
 
 
-def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float) -> Sensing:
-    """Scans all recordings and accepts what all of them together leave no doubt about."""
+def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fastest: float) -> Sensing:
+    """Scans all recordings and accepts what all of them together leave no doubt about.
+
+    `fastest` is the design's rate limit [position/s]: a short turn of a moving stem is no false reading.
+    """
     events = tuple(scan_events(r, noise) for r in recordings)
     accepted: dict[str, dict[str, Estimate]] = {}
     rows = sum(r.n for r in recordings)
     false = sum(int(e.false_position.sum()) for e in events)
     drop = _strongest(events, "sensor_dropouts")
-    if drop.found and false >= 3 and false / rows > _LEAST_RATE:
+    if drop.found and false >= 3 and false / rows > _LEAST_RATE and _false_beyond_motion(recordings, events, fastest):
         accepted["sensor_dropouts"] = dict(drop.estimates)
     quantization = _strongest(events, "sensor_quantization")
     step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
@@ -60,3 +63,14 @@ def _strongest(events: Sequence[Events], name: str) -> Evidence:
 def _noise_without(noise: NoiseModel, step: float) -> float:
     """Noise of the position without the part that the reading's step makes."""
     return float(np.sqrt(max(noise.position.sigma**2 - step**2 / 12.0, 0.0)))
+
+
+def _false_beyond_motion(recordings: Sequence[Recording], events: Sequence[Events], fastest: float) -> bool:
+    """Whether the typical false reading lies further off than the stem could have gone and come back."""
+    jumps = []
+    for recording, event in zip(recordings, events, strict=True):
+        good = np.flatnonzero(~event.false_position & np.isfinite(recording.position))
+        bad = np.flatnonzero(event.false_position & np.isfinite(recording.position))
+        between = np.interp(bad, good, recording.position[good]) if good.size else recording.position[bad]
+        jumps.append(np.abs(recording.position[bad] - between) / (fastest * recording.period_s))
+    return bool(np.median(np.concatenate(jumps)) > 1.5)

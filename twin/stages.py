@@ -8,6 +8,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from twin.case import Case
 from twin.choose.decide import Decision, DecisionRules, decide
 from twin.choose.search import Searcher, SearchRules
@@ -57,19 +59,30 @@ def judge(case: Case, search: SearchRules, rules: DecisionRules, progress: Progr
         return StageResult(case, (_judge(case, channel, search, rules, progress),), case.trials)
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress)
     trials = drive_by_measured(case, first)
-    second = _judge(case, position_channel(trials, case.sigma_y), search, rules, progress)
+    channel = position_channel(trials, case.sigma_y)
+    second = _judge(case, channel, search, rules, progress, 1.0 + _pressure_doubt(case, channel, first))
     return StageResult(case, (first, second), trials)
 
 
-def drive_by_measured(case: Case, converter: Decision) -> tuple[Trial, ...]:
+def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
+    """What the doubt about the driving pressure does to the position: mean square in units of the noise variance."""
+    believing = position_channel(drive_by_measured(case, converter, careful=False), case.sigma_y)
+    difference = (channel.prediction(case.base) - believing.prediction(case.base)) / case.sigma_y
+    return float(np.mean(np.square(difference[channel.use])))
+
+
+def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> tuple[Trial, ...]:
     """The trials with their smoothed measured pressure, smoothed about the best converter model there is."""
     assert case.sigma_p is not None
     best = min((converter.findings.none, *converter.findings.fits), key=lambda f: f.mse)
     correlation = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
     plant = best.plant
-    return tuple(t.with_pressure(smoothed_pressure(plant, t, case.sigma_p, correlation)) for t in case.trials)
+    sigma = case.sigma_p
+    return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, correlation, careful=careful)) for t in case.trials)
 
 
-def _judge(case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress) -> Decision:
+def _judge(
+    case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress, floor: float = 1.0
+) -> Decision:
     findings = Searcher(channel, case.base, case.scales, search, progress).run()
-    return decide(findings, rules)
+    return decide(findings, rules, floor)

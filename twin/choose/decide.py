@@ -21,13 +21,13 @@ class DecisionRules:
     Gains are in units of the noise variance: 1 means as large as the noise itself.
     """
 
-    gain: float = 0.05
+    gain: float = 0.15
     evidence: float = 12.0
     share: float = 0.02
     thorough: float = 0.55
     large_share: float = 0.2
     unexplained: float = 0.5
-    quiet: float = 1.5
+    quiet: float = 2.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,7 +46,11 @@ class Decision:
 
 
 def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Decision:
-    """Walks up from `none` and accepts larger hypotheses as long as they are worth it."""
+    """Walks up from `none` and accepts larger hypotheses as long as they are worth it.
+
+    `floor` is the mean squared residual of the true model, in units of the noise: above 1 where the driving pressure is
+    itself uncertain.
+    """
     accepted = findings.none
     size = 0
     while True:
@@ -59,8 +63,8 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         size = len(better.space.causes)
     before = max(findings.none.mse - floor, 0.0)
     rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
-    gap = size > 0 or findings.none.mse > rules.quiet * floor
     explained = size > 0 and rest < rules.unexplained
+    gap = explained or findings.none.mse > rules.quiet * floor
     return Decision(findings, accepted, explained, gap, rest)
 
 
@@ -71,7 +75,7 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
     significant = score(large, rows, findings.phi) - score(small, rows, findings.phi) > rules.evidence
-    material = gain > max(rules.gain, rules.share * before)
+    material = gain > max(rules.gain, floor - 1.0, rules.share * before)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
     return significant and material and thorough

@@ -32,7 +32,8 @@ class SearchRules:
     rounds: int = 6
     polish: int = 8
     threads: int = 2
-    enough: float = 1.03  # a mean squared residual (noise = 1) that leaves nothing to explain
+    enough: float = 1.2  # a mean squared residual (noise = 1) that leaves nothing to explain
+    enough_share: float = 0.02  # likewise, as a share of what the design leaves
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,9 +77,9 @@ class Searcher:
         level = list(found)
         for size in range(2, self.rules.most + 1):
             best = min(level, key=lambda f: f.mse, default=none)
-            if best.mse <= self.rules.enough:
+            if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
                 break
-            level = self._extended(level, size)
+            level = self._extended(level, found, size)
             found += level
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
@@ -87,21 +88,21 @@ class Searcher:
 
     def _singles(self) -> list[Fit]:
         causes = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
-        fits = self._fit_all([(c,) for c in causes], None, self.rules.rounds, "one cause")
+        fits = self._fit_all([(c,) for c in causes], [], self.rules.rounds, "one cause")
         fits = best_forms(fits, self.channel.rows)
         return self._polished(fits)
 
-    def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
+    def _extended(self, level: Sequence[Fit], found: Sequence[Fit], size: int) -> list[Fit]:
         """Every hypothesis of the beam with one more cause."""
         singles = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
         fits: list[Fit] = []
         seen: set[tuple[str, ...]] = set()
         for parent in sorted(level, key=lambda f: f.mse)[: self.rules.beam]:
-            more = [c for c in singles if c.name not in parent.names]
+            more = [c for c in singles if c.name not in parent.names and not _same_claim(parent, c)]
             more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
-            fits += self._fit_all(
-                [(*parent.space.causes, c) for c in more], parent, self.rules.rounds, f"{size} causes"
-            )
+            known = [parent, *(f for f in found if len(f.names) == 1)]
+            todo = [(*parent.space.causes, c) for c in more]
+            fits += self._fit_all(todo, known, self.rules.rounds, f"{size} causes")
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
         return self._polished(best_forms(fits, self.channel.rows))
 
@@ -112,7 +113,9 @@ class Searcher:
             polished = pool.map(lambda f: fit(self.channel, f.space, [f.z], rounds=12), top)
             return sorted([*polished, *rest], key=lambda f: f.mse)
 
-    def _fit_all(self, hypotheses: Iterable[tuple[Cause, ...]], known: Fit | None, rounds: int, what: str) -> list[Fit]:
+    def _fit_all(
+        self, hypotheses: Iterable[tuple[Cause, ...]], known: Sequence[Fit], rounds: int, what: str
+    ) -> list[Fit]:
         todo = list(hypotheses)
 
         def one(causes: tuple[Cause, ...]) -> Fit:
@@ -141,3 +144,12 @@ def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
         if key not in best or score(one, rows, 1.0) > score(best[key], rows, 1.0):
             best[key] = one
     return list(best.values())
+
+
+def _same_claim(parent: Fit, cause: Cause) -> bool:
+    """Whether a design number has no meaning of its own beside an effect of the parent, or the other way round."""
+    pairs = [(a, b) for one in parent.space.causes for a, b in ((one, cause), (cause, one))]
+    return any(
+        a.effect is not None and b.effect is None and b.name.removeprefix("parameter:") in a.effect.absorbs
+        for a, b in pairs
+    )

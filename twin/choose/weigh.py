@@ -69,6 +69,16 @@ def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: We
             if f is not accepted and len(f.names) == len(accepted.names) and others < set(f.names)
         ]
         near = [rival for o, rival in sorted(rivals, reverse=True) if o > weights.confusable * own]
+        near += [twin for twin in _twins(accepted, name) if twin not in near]
         if near:
             found.append((name, *near))
     return tuple(found)
+
+
+def _twins(accepted: Fit, name: str) -> list[str]:
+    """Effects whose signature is the same but for a shape that nobody knows: evidence between them is evidence about
+    the shapes that happen to be in the catalogue."""
+    cause = next(c for c in accepted.space.causes if c.name == name)
+    if cause.effect is None or cause.form is None:
+        return []
+    return list(cause.effect.same_as.get(cause.form.name, ()))

@@ -41,4 +41,6 @@ EFFECT = Effect(
         Form("before_play", _lag("time constant between measured pressure and force"), _before),
     ),
     twins=("sensor_lag", "dead_time"),
+    absorbs=("tau",),
+    same_as={"after_play": ("sensor_lag",)},
 )

@@ -46,4 +46,5 @@ EFFECT = Effect(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
     ),
+    absorbs=("tau",),
 )

@@ -74,4 +74,5 @@ EFFECT = Effect(
         Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
     ),
     twins=("stiction", "creep"),
+    absorbs=("deadband",),
 )

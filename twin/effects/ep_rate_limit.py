@@ -52,4 +52,5 @@ EFFECT = Effect(
         ),
     ),
     twins=("fill_exhaust_asymmetry",),
+    absorbs=("ep_tau",),
 )

@@ -38,4 +38,5 @@ EFFECT = Effect(
         ),
     ),
     twins=("ep_rate_limit",),
+    absorbs=("ep_tau",),
 )

@@ -62,4 +62,6 @@ EFFECT = Effect(
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
     odds=0.3,  # most benches are dry
+    absorbs=("compliance", "offset"),
+    same_as={"throttling": ("nonlinear_spring",), "near_seat": ("nonlinear_spring",), "at_seat": ("nonlinear_spring",)},
 )

@@ -90,4 +90,5 @@ EFFECT = Effect(
         Form("sudden", (_CHANGE, _WHEN), _sudden),
     ),
     twins=("lvdt_drift",),
+    absorbs=("deadband",),
 )

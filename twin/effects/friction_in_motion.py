@@ -39,4 +39,5 @@ EFFECT = Effect(
     equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes before",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799",
     forms=(Form("full", (), _full), Form("partial", (_SHARE,), _partial)),
+    absorbs=("tau",),
 )

@@ -37,4 +37,5 @@ EFFECT = Effect(
         ),
     ),
     twins=("friction_in_motion",),
+    absorbs=("deadband",),
 )

@@ -45,4 +45,5 @@ EFFECT = Effect(
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(Form("bow", (_BOW,), _bow), Form("swing", (_SWING,), _swing), Form("bow_and_swing", (_BOW, _SWING), _both)),
     twins=("nonlinear_spring", "flow_force"),
+    absorbs=("compliance", "offset"),
 )

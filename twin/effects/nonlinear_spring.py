@@ -43,4 +43,6 @@ EFFECT = Effect(
     source="Garcia, Control Eng. Practice 16 (2008) 1231; actuator data sheets (effective area over stroke)",
     forms=(Form("bow", (_BOW,), _bow), Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing)),
     twins=("lvdt_nonlinearity", "flow_force"),
+    absorbs=("compliance", "offset"),
+    same_as={"bow": ("flow_force",), "bow_and_swing": ("flow_force",)},
 )

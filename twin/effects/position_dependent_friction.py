@@ -84,4 +84,5 @@ EFFECT = Effect(
         Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),
     ),
     twins=("stiction", "spring_asymmetry"),
+    absorbs=("deadband",),
 )

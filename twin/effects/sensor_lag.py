@@ -36,4 +36,6 @@ EFFECT = Effect(
         ),
     ),
     twins=("additional_lag", "dead_time"),
+    absorbs=("tau",),
+    same_as={"first_order": ("additional_lag",)},
 )

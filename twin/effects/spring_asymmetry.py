@@ -51,4 +51,5 @@ EFFECT = Effect(
         ),
     ),
     twins=("position_dependent_friction",),
+    absorbs=("compliance", "deadband", "offset"),
 )

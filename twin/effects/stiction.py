@@ -79,4 +79,5 @@ EFFECT = Effect(
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),
+    absorbs=("deadband",),
 )

@@ -91,27 +91,26 @@ def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray
     return Fit(space, best.z, float(data @ data) / max(rows, 1.0), prior, data, best.normal, used)
 
 
-def starts_of(space: Space, known: Fit | None = None) -> list[FloatArray]:
-    """Start vectors of a space: design numbers at their nominals (or as in `known`), effects at each of their starts.
+def starts_of(space: Space, known: Sequence[Fit] = ()) -> list[FloatArray]:
+    """Start vectors of a space: design numbers at their nominals, effects at each of their starts.
 
-    Causes that `known` already has start where it ended.
+    Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
+    the design numbers start as in the first of them.
     """
     heads = [np.zeros(len(space.numbers))]
     for cause in space.causes:
         if cause.form is None:
             continue
-        block = _known_block(known, cause.name, cause.form.name)
+        block = next((b for f in known if (b := _known_block(f, cause.name, cause.form.name)) is not None), None)
         options = form_starts(cause.form) if block is None else [block]
         heads = [np.concatenate([head, option]) for head in heads for option in options]
-    if known is not None:
+    if known:
         for head in heads:
-            _copy_numbers(head, space, known)
+            _copy_numbers(head, space, known[0])
     return heads
 
 
-def _known_block(known: Fit | None, name: str, form: str) -> FloatArray | None:
-    if known is None:
-        return None
+def _known_block(known: Fit, name: str, form: str) -> FloatArray | None:
     at = len(known.space.numbers)
     for cause in known.space.causes:
         if cause.form is None:

@@ -20,9 +20,18 @@ WIDTH_S = 1.0
 
 
 def smoothed_pressure(
-    plant: Plant, trial: Trial, sigma: float, correlation_samples: float = 1.0, width_s: float = WIDTH_S
+    plant: Plant,
+    trial: Trial,
+    sigma: float,
+    correlation_samples: float = 1.0,
+    width_s: float = WIDTH_S,
+    careful: bool = True,
 ) -> FloatArray:
-    """Smoothed measured pressure on the fine grid. `sigma`: standard deviation of the pressure noise per sample."""
+    """Smoothed measured pressure on the fine grid. `sigma`: standard deviation of the pressure noise per sample.
+
+    Without `careful` all that the smoothed measurement adds is believed; the difference of the two shows how much the
+    pressure is in doubt.
+    """
     model = pressure_fine(plant, trial)
     measured = trial.recording.pressure
     if measured is None:
@@ -32,7 +41,7 @@ def smoothed_pressure(
     extra = smooth_pressure(measured, at_rows, sigma, period_s, correlation_samples, width_s) - at_rows
     width = max(width_s / period_s, 0.5)
     noise = sigma**2 * min(1.0, correlation_samples / (2.0 * np.sqrt(np.pi) * width))
-    trusted = extra * _trust(extra, noise, period_s)
+    trusted = extra * _trust(extra, noise, period_s) if careful else extra
     correction: FloatArray = np.interp(np.arange(trial.grid.n_fine), trial.grid.offsets, trusted)
     return model + correction
 

@@ -21,6 +21,8 @@ from twin.plant import Inserted, Plant
 #: Relative spread of a design number that nobody accuses, and of one that stands accused.
 NUISANCE_SPREAD = 0.01
 ACCUSED_SPREAD = 0.5
+#: ... and of one that an effect of the hypothesis gives another meaning.
+ABSORBED_SPREAD = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,8 +98,10 @@ def make_space(
 ) -> Space:
     """The space of a hypothesis; `numbers` are the design numbers of the stage, accused or not."""
     accused = {c.name.removeprefix("parameter:") for c in causes if c.effect is None}
+    absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
     kept = [n for n in numbers if n in accused or spread > 0.0]
-    unknowns = [_number(base.design, n, ACCUSED_SPREAD if n in accused else spread) for n in kept]
+    spreads = {n: ACCUSED_SPREAD if n in accused else ABSORBED_SPREAD if n in absorbed else spread for n in kept}
+    unknowns = [_number(base.design, n, spreads[n]) for n in kept]
     for cause in causes:
         if cause.form is not None:
             unknowns += _form_unknowns(cause.name, cause.form, scales)
