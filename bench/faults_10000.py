@@ -18,6 +18,7 @@ from bench.coded_slave import coded_slave
 from bench.masters import LibModbusMaster, Master, MinimalModbus, Ours, PymodbusAsync, PymodbusSync, libmodbus_there
 
 MIX = ("late=0.05:0.9-3.5", "noise_before=0.05", "bit_flip=0.03", "drop=0.02", "truncate=0.03")
+MORE = ("noise_after=0.05", "wrong_unit=0.03", "wrong_function=0.03", "exception=0.02:6x3")
 MAKERS: dict[str, Callable[[str, float], Master]] = {
     "lostmotion": Ours,
     "pymodbus sync": PymodbusSync,
@@ -30,22 +31,23 @@ MAKERS: dict[str, Callable[[str, float], Master]] = {
 }
 
 
-def trial(name: str, reads: int, timeout_s: float, seed: int) -> tuple[str, int, int, int, float, str]:
+def trial(name: str, reads: int, timeout_s: float, seed: int, hard: bool) -> tuple[str, int, int, int, float, str]:
     """(master, right, raised, silently wrong, seconds, the master's own counters)."""
-    arguments = [word for fault in MIX for word in ("--fault", fault)]
+    kinds = ["FC03", "FC03", "FC23"] if hard and name != "minimalmodbus" else ["FC03"]
+    arguments = [word for fault in (MIX + MORE if hard else MIX) for word in ("--fault", fault)]
     chance = random.Random(seed)
     right = raised = wrong = 0
     began = time.monotonic()
     slave = coded_slave(*arguments, "--timeout", str(timeout_s), "--seed", str(seed))
     with slave as port, closing(MAKERS[name](port, timeout_s)) as master:
         for _ in range(reads):
-            address = chance.randrange(60_000)
+            address, count = chance.randrange(60_000), chance.choice((2, 4, 4, 4, 9)) if hard else 4
             try:
-                registers = master.ask(("FC03", address, 4))
+                registers = master.ask((chance.choice(kinds), address, count))
             except Exception:  # whatever a master raises, it has not handed out a wrong value
                 raised += 1
                 continue
-            correct = list(registers) == list(range(address, address + 4))
+            correct = list(registers) == list(range(address, address + count))
             right, wrong = right + correct, wrong + (not correct)
         counters = getattr(master, "stats", {})
     shown = ", ".join(f"{key} {value}" for key, value in counters.items() if value)
@@ -58,13 +60,15 @@ def main() -> None:
     parser.add_argument("--timeout", type=float, default=0.03)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=4, help="masters at work at the same time; they mostly wait")
+    parser.add_argument("--hard", action="store_true", help="more kinds of faults; mixed lengths and functions")
     parser.add_argument("--only", action="append", choices=list(MAKERS))
     asked = parser.parse_args()
     names = asked.only or [name for name in MAKERS if libmodbus_there() or "libmodbus" not in name]
-    print(f"{asked.reads} reads of 4 registers, timeout {1e3 * asked.timeout:g} ms, {', '.join(MIX)}")
+    mix = ", ".join(MIX + MORE if asked.hard else MIX)
+    print(f"{asked.reads} reads, timeout {1e3 * asked.timeout:g} ms, {mix}")
     print(f"{'master':26} {'right':>7} {'raised':>7} {'SILENTLY WRONG':>15} {'seconds':>8}")
     with ProcessPoolExecutor(asked.jobs) as pool:
-        jobs = [pool.submit(trial, name, asked.reads, asked.timeout, asked.seed) for name in names]
+        jobs = [pool.submit(trial, name, asked.reads, asked.timeout, asked.seed, asked.hard) for name in names]
         for job in jobs:
             name, right, raised, wrong, seconds, counters = job.result()
             print(f"{name:26} {right:7d} {raised:7d} {wrong:15d} {seconds:8.0f}   {counters}", flush=True)
