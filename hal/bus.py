@@ -29,6 +29,9 @@ class Trust:
     owed: int = 0  # answers to still older probes that never came, and may yet
     lengths: set[int] = field(default_factory=set)  # register counts asked for in earnest
 
+    def __post_init__(self) -> None:
+        self.turnaround_s = self.device.turnaround_ms / 1000.0
+
 
 class RtuBus:
     """Requests to the units of one RTU line. `margin_s`: how much longer than the wire and the device need we wait."""
@@ -37,6 +40,7 @@ class RtuBus:
         self._line = line
         self._units = {device.id: Trust(device) for device in devices}
         self._margin_s = margin_s
+        self._char_s = line.serial.char_s
         self._nonce = 0
 
     @property
@@ -65,11 +69,13 @@ class RtuBus:
     def timeout_s(self, request: Request) -> float:
         """How long to wait for an answer [s]: both frames on the wire, the device's turnaround, and the margin."""
         chars = len(request.pdu) + (request.size or 250) + 6
-        turnaround_s = self._trust(request.unit).device.turnaround_ms / 1000.0
-        return chars * self._line.serial.char_s + turnaround_s + self._margin_s
+        return chars * self._char_s + self._trust(request.unit).turnaround_s + self._margin_s
 
     def _trust(self, unit: int) -> Trust:
-        return self._units.setdefault(unit, Trust(Device(id=unit)))
+        trust = self._units.get(unit)
+        if trust is None:
+            trust = self._units[unit] = Trust(Device(id=unit))
+        return trust
 
     def _once(self, request: Request) -> Reply:
         trust = self._trust(request.unit)
