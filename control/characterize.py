@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from control.identify_interval import Interval
+from control.identify_readings import fast_noise
 from logs.recording import FloatArray, Recording
 
 LEAST_DWELL_S = 2.0
@@ -128,7 +129,7 @@ def characterize(recordings: list[Recording], settling: Settling | None = None) 
         return BacklashCurves(None, None, ("no dwells: the curves need a staircase or other stays of 2 s and more",))
     low = min(float(np.nanmin(r.position)) for r in recordings)
     reach = max(float(np.nanmax(r.position)) for r in recordings) - low
-    noise = max(reading_noise(r) for r in recordings)
+    noise = max(fast_noise(r.position) for r in recordings)
     inside = (position > low + STOP_SHARE * reach + 3 * noise) & (position < low + (1 - STOP_SHARE) * reach - 3 * noise)
     least = max(4.0 * noise, 0.004 * reach)
     settled = np.abs(drift) < np.maximum(3.0 * noise, 0.1 * np.abs(moved))
@@ -189,10 +190,3 @@ def fit_curve(pressure: FloatArray, position: FloatArray) -> Curve | None:
         position,
         weight > 0.0,
     )
-
-
-def reading_noise(recording: Recording) -> float:
-    """Standard deviation of fast changes of the position reading, robustly."""
-    steps = np.diff(recording.position)
-    steps = steps[np.isfinite(steps)]
-    return float(1.4826 * np.median(np.abs(steps)) / np.sqrt(2.0)) if steps.size else 0.0

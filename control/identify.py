@@ -7,15 +7,17 @@ for comparison, the two curves from steady dwells and the time constant by the 6
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
-from control.characterize import Settling, characterize, reading_noise
+from control.characterize import Settling, characterize
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
 from control.identify_model import lagged, make_grid
 from control.identify_pressure import PressureStage, fit_pressure
+from control.identify_readings import false_readings, fast_noise
 from control.identify_result import Estimate, Identified, quality_of
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
@@ -36,6 +38,7 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
     base = defaults or default_design(unit_p, unit_x)
     notes: list[str] = []
+    recordings = [_cleaned(each, notes) for each in recordings]
     tracks: list[Track] = []
     stages: list[PressureStage] = []
     for recording in recordings:
@@ -98,8 +101,21 @@ def _check(recordings: Sequence[Recording]) -> None:
             f"{first.name}: the command never changes; record a sweep, for example `lostmotion sweep staircase`"
         )
     moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
-    if moved < 8.0 * max(reading_noise(each) for each in recordings):
+    if moved < 8.0 * max(fast_noise(each.position) for each in recordings):
         raise BadInput(f"{first.name}: the position never leaves its noise; sweep over both curves (about 6 to 12 psi)")
+
+
+def _cleaned(recording: Recording, notes: list[str]) -> Recording:
+    """The recording with plainly false readings made missing, and said."""
+    values = {"position": recording.position}
+    if recording.pressure is not None:
+        values["pressure"] = recording.pressure
+    for name, signal in values.items():
+        false = false_readings(signal)
+        if false.any():
+            notes.append(f"{recording.name}: {int(false.sum())} false readings of the {name} are left out")
+            values[name] = np.where(false, np.nan, signal)
+    return replace(recording, **values)  # type: ignore[arg-type]
 
 
 def _pressure(

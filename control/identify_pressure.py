@@ -13,6 +13,7 @@ import numpy as np
 
 from control.identify_interval import Interval, intervals
 from control.identify_model import Grid, lagged
+from control.identify_readings import fast_noise
 from logs.recording import FloatArray
 
 WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
@@ -45,7 +46,7 @@ def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_
     from scipy.optimize import minimize_scalar
 
     good = np.isfinite(pressure)
-    moves = bool(np.ptp(command[good]) > 20.0 * _fast_noise(pressure[good]))
+    moves = bool(np.ptp(command[good]) > 20.0 * fast_noise(pressure[good]))
     log_tau = np.log(default_tau_s or 1e-3)
     if moves:
         coarse = np.linspace(np.log(TAU_RANGE_S[0]), np.log(TAU_RANGE_S[1]), 24)
@@ -120,10 +121,6 @@ def _interval(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.nd
     found = intervals(np.array([log_tau]), slope[:, None], np.clip(rest, -limit, limit))[0]
     tau_s = float(np.exp(log_tau))
     return Interval(tau_s, tau_s * float(np.exp(found.low - log_tau)), tau_s * float(np.exp(found.high - log_tau)))
-
-
-def _fast_noise(values: FloatArray) -> float:
-    return float(1.4826 * np.median(np.abs(np.diff(values))) / np.sqrt(2.0)) if values.size > 2 else 0.0
 
 
 def moving_average(time_s: FloatArray, values: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:

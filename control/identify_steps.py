@@ -11,8 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.characterize import Dwells, Settling, at_rest, find_dwells, reading_noise
+from control.characterize import Dwells, Settling, at_rest, find_dwells
 from control.identify_interval import Interval
+from control.identify_readings import fast_noise
 from logs.recording import FloatArray, Recording
 
 SHARE = 1.0 - math.exp(-1.0)
@@ -51,7 +52,7 @@ def time_constant_63(recordings: list[Recording], settling: Settling, travel: fl
 
 def _times(recording: Recording, dwells: Dwells, settling: Settling, largest: float) -> list[float]:
     tau_s, ep_tau_s = settling.tau_s, settling.delay_s
-    noise = reading_noise(recording)
+    noise = fast_noise(recording.position)
     ends = at_rest(dwells, settling)
     times = []
     for i in range(2, dwells.command.size):

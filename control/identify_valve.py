@@ -15,6 +15,7 @@ import numpy as np
 
 from control.identify_least_squares import Problem, minimise
 from control.identify_model import RATE, TRAVEL, Grid, make_grid, stem
+from control.identify_readings import fast_noise
 from logs.recording import FloatArray
 
 NEVER = 1e9  # a travel or a rate limit that is never reached
@@ -34,8 +35,12 @@ class Track:
 
     @property
     def start(self) -> float:
-        """The position at the first row, from its first good readings."""
-        return float(np.median(self.position[self.good][:5]))
+        """The position at the first row: a line through the good readings of the first second, or the first five."""
+        time_s, position = self.grid.time_s[self.good], self.position[self.good]
+        count = min(time_s.size, max(5, int(np.searchsorted(time_s, time_s[0] + 1.0))))
+        slope, start = np.polyfit(time_s[:count] - self.grid.time_s[0], position[:count], 1)
+        steady = abs(slope) * (time_s[count - 1] - time_s[0]) < 6.0 * fast_noise(position)
+        return float(np.mean(position[:count]) if steady else start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +101,7 @@ def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
     time_s = track.grid.time_s
     stride = max(1, int(least_period_s / max(float(np.median(np.diff(time_s))), 1e-6)))
     keep = slice(None, None, stride)
-    grid = make_grid(time_s[keep], least_period_s)
+    grid = make_grid(time_s[keep], 0.25 * least_period_s)
     pressure = np.interp(grid.fine_time_s, track.grid.fine_time_s, track.pressure)
     return Track(grid, pressure, track.position[keep], track.good[keep])
 
@@ -205,12 +210,12 @@ def _reach(tracks: Sequence[Track]) -> tuple[tuple[float, float], float]:
     """The range of the driving pressure, and the width of the range of the position."""
     p_low = min(float(t.pressure.min()) for t in tracks)
     p_high = max(float(t.pressure.max()) for t in tracks)
-    low = min(float(np.percentile(t.position[t.good], 0.1)) for t in tracks)
+    low = min(float(np.percentile(t.position[t.good], 0.5)) for t in tracks)
     return (p_low, p_high), _top(tracks) - low
 
 
 def _top(tracks: Sequence[Track]) -> float:
-    return max(float(np.percentile(t.position[t.good], 99.9)) for t in tracks)
+    return max(float(np.percentile(t.position[t.good], 99.5)) for t in tracks)
 
 
 def top_speed(tracks: Sequence[Track], fit: ValveFit) -> float:

@@ -65,17 +65,15 @@ def joined(levels: tuple[float, ...], start: float, *, rise_s: float, hold_s: fl
 def turning_points(values: list[float]) -> list[float]:
     """The extremes that a play still remembers after going through `values`, oldest first, the last value at the end.
 
-    Smaller swings inside a later larger one are forgotten. Going through the result from a saturated start brings a
-    play, or any spread of plays, to the same state as going through all of `values`.
+    Smaller swings inside a later larger one are forgotten. Going through the result from far below, where every play
+    is saturated, brings a play, or any spread of plays, to the same state as going through all of `values` from there.
     Source: return-point memory and wiping-out, Mayergoyz, "Mathematical Models of Hysteresis", Springer 1991, ch. 1.
     """
-    kept: list[float] = []
+    kept = [-math.inf]
     for value in values:
-        while kept and kept[-1] == value:
-            kept.pop()
         while len(kept) >= 2 and (value - kept[-1]) * (kept[-1] - kept[-2]) >= 0.0:
             kept.pop()
         while len(kept) >= 3 and abs(value - kept[-1]) >= abs(kept[-1] - kept[-2]):
             del kept[-2:]
         kept.append(value)
-    return kept
+    return kept[1:]

@@ -12,10 +12,10 @@ from control.step import Step, joined
 
 @dataclass(frozen=True, kw_only=True)
 class Nested(Experiment):
-    """Up and down between bounds that close in from [low, high] on `centre`, `loops` times, then open out again.
+    """Up and down between bounds that close in from [low, high] on `centre`, `loops` times, then one full loop.
 
     The bounds move by equal amounts, so that the reversals lie evenly over both curves; the innermost loop is
-    `smallest` wide. With `outward` the same loops are gone through a second time from the inside out.
+    `smallest` wide. With `outward` the same loops are gone through again from the inside out instead.
     """
 
     kind: ClassVar[str] = "nested"
@@ -23,7 +23,7 @@ class Nested(Experiment):
     high: float = level(13.0, "highest level of the outer loop")
     centre: float = level(8.7, "level that the loops close in on")
     smallest: float = span(2.0, "width of the innermost loop")
-    loops: int = number(6, "number of loops, the outer one included", least=2, most=200)
+    loops: int = number(5, "number of loops, the outer one included", least=2, most=200)
     step: float = span(0.25, "height of a step")
     rise_s: float = seconds(0.0, "time a step takes to rise; 0 jumps")
     dwell_s: float = seconds(4.0, "stay on each step; the longest stay with until_settled", least=0.1)
@@ -43,7 +43,8 @@ class Nested(Experiment):
             half = 0.5 * self.smallest
             inward.append(self.high + share * (self.centre + half - self.high))
             inward.append(self.low + share * (self.centre - half - self.low))
-        return inward + inward[::-1] if self.outward else inward
+        # Without the way out, the innermost loop is closed by going all the way up again.
+        return inward + inward[::-1] if self.outward else [*inward, self.high]
 
     def one_pass(self) -> tuple[Step, ...]:
         levels: list[float] = []
