@@ -48,8 +48,8 @@ class Observer:
     """Frozen settings: the design, the gains of the pressure correction and of the converter's calibration."""
 
     design: DesignModel
-    pressure_gain: float = 0.5
-    bias_gain: float = 0.2
+    pressure_gain: float = 0.3
+    bias_gain: float = 0.05
 
     def start(self, seen: Seen) -> Inside:
         """At rest at the reading; edges from the design, moved where the reading contradicts them."""

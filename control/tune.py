@@ -80,10 +80,10 @@ def margins(loop: LinearLoop, design: DesignModel) -> Margins:
 
 def hunts(loop: LinearLoop, design: DesignModel) -> bool:
     """Whether a limit cycle is predicted, or the loop with the play wide open is unstable."""
-    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 800)
+    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 400)
     line = loop(omega) * design.compliance
     crossing = (np.diff(np.sign(line.imag)) != 0) & (line.real[:-1] < -1.0)
-    return bool(crossing.any()) or any(cycle.stable for cycle in predict(loop, design, n=120, points=800))
+    return bool(crossing.any()) or any(cycle.stable for cycle in predict(loop, design, n=80, points=400))
 
 
 def phase_margin(loop: LinearLoop, design: DesignModel) -> float:

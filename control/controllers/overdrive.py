@@ -44,6 +44,8 @@ class Overdrive(Law[OverdriveState]):
     same_in: float = 0.0005
     back_in: float = 0.0009
     short_in: float = 0.0006
+    patience_s: float = 3.0
+    tolerance: float = 0.3
     omega: float = 1.2
 
     def start(self, seen: Seen, target_in: float) -> OverdriveState:
@@ -60,7 +62,7 @@ class Overdrive(Law[OverdriveState]):
         elif self._at_stop(target_in):
             aim_psi = self._stop_psi(soon, target_in, state.aim_psi)
         else:
-            pushed = self._push(soon, target_in, turns)
+            pushed = self._push(soon, target_in, turns, state.quiet_s)
             turns += 1 if side * pushed < 0 else 0
             side = pushed or side
             aim_psi = self._approach_psi(soon, target_in, pushed) if pushed else state.aim_psi
@@ -112,17 +114,21 @@ class Overdrive(Law[OverdriveState]):
         speed = min(self.design.rate_limit, abs(target_in - inside.x) / self.approach_s)
         return self._edge_psi(inside, inside.x + drive * speed * self.design.tau_s, drive)
 
-    def _push(self, inside: Inside, target_in: float, turns: int) -> int:
+    def _push(self, inside: Inside, target_in: float, turns: int, quiet_s: float) -> int:
         """The side on which the play output has to be pushed to reach the target; 0 where it is near enough.
 
-        Every time that it had to be turned back makes it more patient: where friction or a dead time defeats small
-        corrections, an error that stays is better than hunting.
+        A large miss is answered at once, a small one only when the estimate has had `patience_s` to calm down (half of
+        that to push on). Every time that it had to be turned back makes it more tolerant: where friction or a dead time
+        defeats small corrections, an error that stays is better than hunting.
         """
         miss_in = target_in - inside.w
         closing, opening = self._observer.contact(inside)
         side = 1 if miss_in > 0.0 else -1
-        back_in = self.back_in * (1.0 + 0.3 * max(turns - 5, 0))
-        return side if abs(miss_in) > (self.same_in if (closing if side > 0 else opening) else back_in) else 0
+        in_contact = closing if side > 0 else opening
+        allowed_in = self.same_in if in_contact else self.back_in * (1.0 + self.tolerance * max(turns - 3, 0))
+        if quiet_s < (0.5 if in_contact else 1.0) * self.patience_s:
+            allowed_in *= 4.0
+        return side if abs(miss_in) > allowed_in else 0
 
     def _stop_psi(self, inside: Inside, target_in: float, aim_psi: float) -> float:
         """Well beyond the edge, because an end stop forgives; left alone once it is there."""

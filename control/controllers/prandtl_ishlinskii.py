@@ -38,7 +38,8 @@ class PrandtlIshlinskii(Law[PlaysState]):
         x_psi = min(max(seen.position_in, 0.0), self.design.travel) / self.design.compliance
         away_psi = seen.pressure_psi - self.design.offset
         plays = tuple(min(max(x_psi, away_psi - r), away_psi + r) for r in self._widths())
-        return PlaysState(plays, seen.pressure_psi, 0.0, seen.commanded_psi)
+        spread_in = self._output(plays) - x_psi * self.design.compliance
+        return PlaysState(plays, seen.pressure_psi, spread_in, seen.commanded_psi)
 
     def law(self, state: PlaysState, seen: Seen, target_in: float, dt_s: float) -> tuple[PlaysState, float]:
         share = 1.0 - math.exp(-dt_s / 0.2)

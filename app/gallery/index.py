@@ -1,0 +1,41 @@
+"""The items of the gallery by key, in the order of the thesis; each is computed when asked for."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from app.gallery.figure import Entry
+
+_FIGURES = {
+    "1-2": "characterization",
+    "1-5": "characterization",
+    "1-6": "characterization",
+    "2-3": "diagrams",
+    "2-4": "characterization",
+    "2-5": "characterization",
+    "2-6": "diagrams",
+    "2-7": "characterization",
+    "2-8": "nyquist",
+    "3-1": "diagrams",
+    "3-2": "controllers",
+    "3-4": "controllers",
+    "3-5": "controllers",
+    "3-6": "diagrams",
+    "3-7": "controllers",
+    "3-9": "controllers",
+    "3-10": "controllers",
+    "3-12": "controllers",
+    "beyond": "controllers",
+    "rivals": "rivals",
+}
+KEYS = tuple(_FIGURES)
+
+
+def make(key: str) -> Entry:
+    """Computes one item."""
+    module = import_module(f"app.gallery.{_FIGURES[key]}")
+    if _FIGURES[key] == "diagrams":
+        found: Entry = next(entry for entry in module.entries() if entry.key == key)
+    else:
+        found = getattr(module, f"figure_{key.replace('-', '_')}")()
+    return found

@@ -1,0 +1,82 @@
+"""compare, tune and analyse on the command line; trials without a wire against the same over Modbus."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from app.commands.analyse import command as analyse
+from app.commands.compare import command as compare
+from app.commands.tune import command as tune
+from app.physics_bench import open_virtual
+from app.session import open_bench
+from control.controller import make_controller
+from control.design import DesignModel, save_design
+from control.trial import Opened, run_trial
+from hal.errors import BadInput
+
+DESIGN = DesignModel()
+
+
+@pytest.mark.parametrize("name", ["overdrive", "if_then_line"])
+def test_a_trial_without_a_wire_is_the_trial_over_modbus(name: str) -> None:
+    """Same plant, same seed. Over Modbus the readings are rounded to the profile's registers, and that is all.
+
+    Without noise, so that rounding cannot tip a decision.
+    """
+    targets = np.repeat([0.15, 0.4], 150)
+    controller = make_controller(name, DESIGN)
+    near = run_trial(open_virtual(5, noise=0.0), controller, targets, 0.1)
+    with open_bench(seed=5, options={"noise": 0.0}) as session:
+        wired = run_trial(Opened(session.bench, session.clock), controller, targets, 0.1)
+    assert np.abs(near.position_in - wired.position_in).max() < 0.01 * DESIGN.travel
+
+
+def test_compare_prints_json() -> None:
+    arguments = ["-c", "overdrive,p", "-s", "reversals", "--seeds", "1", "--processes", "1", "--json"]
+    done = CliRunner().invoke(compare, arguments, catch_exceptions=False)
+    said = json.loads(done.stdout)
+    assert len(said["trials"]) == 2
+    assert said["summary"]["overdrive"]["steady_worst"] < said["summary"]["p"]["steady_worst"]
+
+
+def test_compare_prints_a_table_and_a_picture(tmp_path: Path) -> None:
+    picture = tmp_path / "rivals.png"
+    arguments = ["-c", "if_then_line", "-s", "ramps", "--seeds", "1", "--processes", "1", "--plot", str(picture)]
+    done = CliRunner().invoke(compare, arguments, catch_exceptions=False)
+    assert "if_then_line" in done.stdout
+    assert picture.stat().st_size > 1000
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [(["-c", "pid"], "does not exist"), (["-s", "storm"], "does not exist"), (["--detail", "beauty"], "not a score")],
+)
+def test_compare_refuses_what_it_does_not_know(arguments: list[str], said: str) -> None:
+    with pytest.raises(BadInput, match=said):
+        CliRunner().invoke(compare, arguments, catch_exceptions=False)
+
+
+def test_tune_follows_the_model(tmp_path: Path) -> None:
+    model = tmp_path / "model.toml"
+    save_design(DesignModel(compliance=0.095, a1=9.0, a2=7.0), model)
+    done = CliRunner().invoke(tune, [str(model), "--json"], catch_exceptions=False)
+    said = json.loads(done.stdout)
+    assert said["if_then_line"]["settings"]["g"] == pytest.approx(1.0 / 0.095, rel=0.01)
+    assert said["pi"]["margins"]["gain"] >= 1.9
+    for name, row in said.items():
+        make_controller(name, DESIGN, **row["settings"])
+
+
+def test_analyse_one_loop(tmp_path: Path) -> None:
+    picture = tmp_path / "nyquist.png"
+    arguments = ["--law", "p_incremental", "--kp", "3", "--json", "--plot", str(picture)]
+    done = CliRunner().invoke(analyse, arguments, catch_exceptions=False)
+    (case,) = json.loads(done.stdout)
+    assert case["predicted"]["stable"]
+    assert case["measured"]["period_s"] == pytest.approx(15.0, abs=0.5)
+    assert picture.is_file()

@@ -1,0 +1,94 @@
+"""Predicted limit cycles: the thesis's conclusion, python-control's numbers, harmonic balance, the virtual valve."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from app.hunting import study
+from control.analysis.harmonic_balance import balance
+from control.analysis.limit_cycle import predict
+from control.analysis.loop import LinearLoop, thesis_loop
+from control.analysis.measured import measure_cycle
+from control.design import DesignModel
+from control.tune import hunts, margins, phase_margin
+
+DESIGN = DesignModel()
+
+
+class Rational(LinearLoop):
+    """3 / (0.4 s (0.05 s + 1)) before the play: a loop that python-control can have too."""
+
+    def before_play(self, omega: npt.NDArray[np.float64]) -> npt.NDArray[np.complex128]:
+        s = 1j * omega
+        return np.asarray(3.0 / (0.4 * s * (0.05 * s + 1.0)), dtype=np.complex128)
+
+
+def test_the_thesis_is_right_about_one_lag() -> None:
+    assert predict(thesis_loop(), DESIGN) == []
+
+
+def test_intersections_agree_with_python_control() -> None:
+    """`control.describing_function_response` (0.10.2) gives amplitudes and frequencies of both intersections."""
+    found = predict(Rational("p", 3.0, tick_s=0.0), DESIGN)
+    assert [(c.pressure_psi, c.omega) for c in found] == [
+        (pytest.approx(1.6468, rel=2e-3), pytest.approx(0.16577, rel=5e-3)),
+        (pytest.approx(2.5540, rel=2e-3), pytest.approx(0.45484, rel=5e-3)),
+    ]
+    assert [c.stable for c in found] == [False, True]
+
+
+def test_the_positional_law_never_hunts_and_the_incremental_one_does() -> None:
+    assert predict(LinearLoop("p", 3.0), DESIGN) == []
+    assert predict(LinearLoop("p_incremental", 1.0), DESIGN) == []
+    assert any(c.stable for c in predict(LinearLoop("p_incremental", 3.0), DESIGN))
+
+
+def test_delay_makes_a_pi_loop_worse() -> None:
+    quick, slow = (predict(LinearLoop("pi", 3.0, 8.0, dead_time_s=d), DESIGN)[-1] for d in (0.0, 0.5))
+    assert slow.stem_in > quick.stem_in
+
+
+def test_delay_calms_the_incremental_law() -> None:
+    """It accumulates once per round trip, so a longer round trip accumulates more slowly."""
+    assert predict(LinearLoop("p_incremental", 3.0, dead_time_s=0.5), DESIGN) == []
+
+
+def test_prediction_balance_and_measurement_agree() -> None:
+    (case,) = study([LinearLoop("p_incremental", 3.0)], DESIGN, duration_s=400.0)
+    assert case.predicted is not None and case.balanced is not None and case.measured is not None
+    assert case.predicted.stem_in == pytest.approx(case.measured.stem_in, rel=0.08)
+    assert case.balanced.stem_in == pytest.approx(case.measured.stem_in, rel=0.02)
+    assert case.balanced.period_s == pytest.approx(case.measured.period_s, rel=0.02)
+
+
+def test_the_rate_limit_is_seen_by_the_balance() -> None:
+    fast = LinearLoop("p_incremental", 3.0)
+    cycle = predict(fast, DESIGN)[-1]
+    free = balance(fast, DesignModel(rate_limit=10.0), cycle)
+    slow = balance(fast, DesignModel(rate_limit=0.06), cycle)
+    assert slow.period_s > 1.02 * free.period_s
+
+
+def test_a_quiet_or_dying_record_has_no_cycle() -> None:
+    t = np.arange(0.0, 200.0, 0.1)
+    assert measure_cycle(t, 0.001 * np.sin(t), 0.01) is None
+    assert measure_cycle(t, np.exp(-t / 30.0) * np.sin(t), 1e-4) is None
+    steady = measure_cycle(t, 0.2 * np.sin(t), 0.01)
+    assert steady is not None
+    assert steady.period_s == pytest.approx(2.0 * np.pi, rel=0.01)
+    assert steady.stem_in == pytest.approx(0.2, rel=0.01)
+
+
+def test_phase_margin_agrees_with_python_control() -> None:
+    """`control.margin` of (26.3 + 9.75 / s) 0.19 / ((0.3 s + 1) (2.7 s + 1)): 63.552 degrees."""
+    assert phase_margin(LinearLoop("pi", 26.3, 9.75, tick_s=0.0), DESIGN) == pytest.approx(63.552, abs=0.1)
+
+
+def test_margins_end_where_hunting_begins() -> None:
+    loop = LinearLoop("p_incremental", 1.36)
+    left = margins(loop, DESIGN)
+    assert left.gain == pytest.approx(2.0, rel=0.03)
+    assert not hunts(LinearLoop("p_incremental", 1.36 * left.gain * 0.99), DESIGN)
+    assert hunts(LinearLoop("p_incremental", 1.36 * left.gain * 1.03), DESIGN)

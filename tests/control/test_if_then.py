@@ -1,0 +1,43 @@
+"""The If-Then rule: equations (3-1) and (3-3), and figure 3-5's two steps."""
+
+from __future__ import annotations
+
+import pytest
+
+from control.controller import make_controller
+from control.design import DesignModel
+from control.if_then import Decision, crossing_psi, threshold_line_psi
+from hal.sample import Reading, Sample
+
+DESIGN = DesignModel()
+
+
+@pytest.mark.parametrize(
+    ("error", "pressure", "crossing"),
+    [(0.1, 7.0, 2.96), (0.1, 9.0, 0.0), (-0.1, 9.0, -2.96), (-0.1, 7.0, 0.0), (0.0, 7.0, 0.0)],
+)
+def test_the_deadband_is_added_on_the_wrong_side_only(error: float, pressure: float, crossing: float) -> None:
+    assert crossing_psi(error, pressure, 8.12, 2.96) == crossing
+
+
+def test_the_printed_3_3_is_the_line_midway_between_the_curves() -> None:
+    for x in (0.0, 0.2, 0.5625):
+        closing, opening = DESIGN.a1 + x / DESIGN.compliance, DESIGN.a2 + x / DESIGN.compliance
+        midway = threshold_line_psi(x, DESIGN.compliance, DESIGN.a1, DESIGN.a2)
+        assert midway == pytest.approx(0.5 * (closing + opening))
+
+
+@pytest.mark.parametrize(("pressure", "step"), [(9.833, 0.1 / 0.19), (6.873, 0.1 / 0.19 + 2.96)])
+def test_the_two_steps_of_figure_3_5(pressure: float, step: float) -> None:
+    controller = make_controller("if_then_line", DESIGN)
+    at_rest = Sample(0.0, pressure, Reading(0.2, 0.0, 0.0), Reading(pressure, 0.0, 0.0))
+    _, command = controller.step(controller.initial(at_rest, 0.3), at_rest, 0.3, 0.1)
+    assert command == pytest.approx(pressure + step)
+
+
+def test_it_decides_at_its_own_pace() -> None:
+    decision = Decision(0.3, 9.0)
+    ticks = 0
+    while not decision.due(0.1):
+        decision, ticks = decision.later(0.1), ticks + 1
+    assert ticks == 3
