@@ -12,6 +12,7 @@ from tests.twin.toy_valve import Toy, record, staircase
 from twin.noise.model import estimate_noise, poisson_tail
 from twin.noise.repeats import find_repeats
 from twin.noise.robust import autocorrelation, autoregression, correlation_samples, robust_sigma
+from twin.noise.still import even_windows, fast_memory, given_back, still_pieces
 
 DT = 0.1
 SIGMA = 8e-4
@@ -66,6 +67,29 @@ def test_always_moving_falls_back_to_fast_changes_and_says_so() -> None:
     assert noise.position.source == "high_frequency"
     assert noise.position.sigma == pytest.approx(SIGMA, rel=0.15)
     assert noise.pressure is None
+
+
+def test_an_even_command_will_do_for_the_pressure() -> None:
+    command = np.interp(np.arange(4000), [0, 1900, 2100, 4000], [4.0, 12.0, 12.1, 4.5])
+    clean = record(Toy(), command, DT, 0, SIGMA, 0.0)
+    assert clean.pressure is not None
+    memory = replace(clean, pressure=clean.pressure + coloured(clean.n, 0.5, 0.02, 7))
+    noise = estimate_noise([memory]).pressure
+    assert noise is not None
+    assert noise.source == "straight"
+    assert noise.sigma == pytest.approx(0.02, rel=0.15)
+    assert noise.correlation_samples == pytest.approx(3.0, rel=0.35)
+
+
+def test_memory_of_the_fast_part_and_what_parabolas_take() -> None:
+    level, phi = fast_memory(coloured(40000, 0.8, 1.0, 3) + 3 * np.sin(np.arange(40000) / 400))
+    assert level == pytest.approx(1.0, rel=0.15)
+    assert phi == pytest.approx(0.8, abs=0.1)
+    pieces = still_pieces(coloured(20000, 0.8, 1.0, 4), 0.1, even_windows(20000, 0.1) // 26 * 26)
+    sizes = [piece.size for piece in pieces]
+    rho, factor = given_back(autocorrelation(pieces), sizes)
+    assert rho[1] == pytest.approx(0.8, abs=0.07)
+    assert factor * robust_sigma(np.concatenate(pieces)) == pytest.approx(1.0, rel=0.15)
 
 
 def test_a_period_inside_one_record_is_a_repeat() -> None:

@@ -1,9 +1,10 @@
-"""Stick-slip: the stem stops and starts again while the pressure goes on in one direction.
+"""Stick-slip: the stem slows down and starts again, time after time, while the pressure goes on one way.
 
-A play followed by lags moves on without a stop once a ramp has picked it up. A stop in the middle of a monotone ramp
-of measured pressure is therefore an event that neither play nor lag nor a curved spring makes; point-wise errors do not
-show it once the jumps are as small as the noise. Source: Choudhury, Thornhill & Shah, "Modelling valve stiction",
-Control Engineering Practice 13, 2005 (deadband, stickband, slip jump).
+A play followed by lags moves evenly once a ramp has picked it up; a curved spring or a rough spot changes its speed
+once or twice. Speed that swings between far below and far above its mean many times on one ramp of measured pressure
+is an event that none of them makes; point-wise errors do not show it once the jumps are as small as the noise.
+Source: Choudhury, Thornhill & Shah, "Modelling valve stiction", Control Engineering Practice 13, 2005 (deadband,
+stickband, slip jump).
 """
 
 from __future__ import annotations
@@ -24,17 +25,17 @@ from twin.where.regime import speed_sigma
 IntArray = npt.NDArray[np.int64]
 
 _BELL_S = 0.4
-_SHORTEST_S = 0.8
-_MOVES, _RESTS = 4.0, 2.0  # sigmas of speed noise
-_FALSE_PER_RUN = 0.02  # stops per ramp that noise alone makes; set on ramps without stick-slip
+_CLEAR = 4.0  # sigmas of speed noise, and
+_SWING = 0.35  # of the mean speed: beyond both, the speed is above or below its mean
+_USUAL = 0.5  # swings per ramp that other effects make
 
 
 @dataclass(frozen=True, slots=True)
-class _Stop:
-    """A rest of the stem between two motions of one direction: rows, pressure built up in it, the jump that follows."""
+class _Swing:
+    """One slow-down and new start: rows of the slow part, pressure and stem travel from start to start."""
 
+    slow: int
     start: int
-    stop: int
     build_up: float
     jump: float
 
@@ -48,8 +49,8 @@ def stick_slip(
 ) -> Evidence:
     """Evidence for `stiction` from slow ramps; `pressure` is measured, its own noise is filtered here.
 
-    Estimates: `build_up` (pressure gathered during a stop, in its unit), `jump` (stem travel after it), `dwell` [s],
-    `speed_kurtosis` on the ramps (3 for even motion in noise).
+    Estimates: `build_up` (pressure from one start to the next, in its unit), `jump` (stem travel in between), `dwell`
+    (time below the mean speed) [s], `speed_spread` on the ramps (deviation over mean; small for even motion).
     """
     if pressure is None:
         return nothing("stiction", "without measured pressure a stop of the stem may be a stop of the pressure")
@@ -61,39 +62,44 @@ def stick_slip(
     speed = np.gradient(smooth, time_s)
     drive = np.gradient(gaussian_filter1d(_filled(pressure), bell, mode="nearest"), time_s)
     speed_noise = speed_sigma(noise_sigma, period, bell, correlation_samples)
-    ramps = _ramps(drive, time_s)
-    stops: list[_Stop] = []
+    swings: list[_Swing] = []
     runs = 0
     shape: list[FloatArray] = []
-    for start, stop in ramps:
-        found, moved = _stops_in(slice(start, stop), smooth, speed, pressure, speed_noise, period)
-        stops += found
-        runs += moved
-        if moved:
-            shape.append(speed[start:stop] / float(np.mean(np.abs(speed[start:stop]))))
+    for start, stop in _ramps(drive, time_s):
+        moving = _moving(speed[start:stop] * np.sign(pressure_change(pressure, start, stop)), speed_noise)
+        if moving is None:
+            continue
+        runs += 1
+        v = np.abs(speed[start:stop][moving])
+        shape.append(v / v.mean() - 1.0)
+        swings += _swings(v, start + moving.start, smooth, pressure, speed_noise)
     if runs == 0:
         return nothing("stiction", "no slow ramp of pressure moves the stem: stick-slip could not show")
-    return _evidence(stops, runs, time_s, np.concatenate(shape))
+    return _evidence(swings, runs, time_s, np.concatenate(shape))
 
 
-def _evidence(stops: list[_Stop], runs: int, time_s: FloatArray, shape: FloatArray) -> Evidence:
-    expected = _FALSE_PER_RUN * runs
-    centred = shape - shape.mean()
-    kurtosis = float(np.mean(centred**4) / max(float(np.mean(centred**2)) ** 2, 1e-30))
-    estimates = {"speed_kurtosis": Estimate(kurtosis, (kurtosis, kurtosis))}
-    if not stops:
-        return Evidence("stiction", 0.0, 1.0, estimates)
-    for name, unit, values in (
-        ("build_up", "", [abs(s.build_up) for s in stops]),
-        ("jump", "", [abs(s.jump) for s in stops]),
-        ("dwell", "s", [float(time_s[s.stop - 1] - time_s[s.start]) for s in stops]),
+def pressure_change(pressure: FloatArray, start: int, stop: int) -> float:
+    """Change of pressure over the rows, from the medians of their ends."""
+    ends = max(1, min(10, (stop - start) // 2))
+    return float(np.nanmedian(pressure[stop - ends : stop]) - np.nanmedian(pressure[start : start + ends]))
+
+
+def _evidence(swings: list[_Swing], runs: int, time_s: FloatArray, shape: FloatArray) -> Evidence:
+    expected = _USUAL * runs
+    spread = float(shape.std())
+    estimates = {"speed_spread": Estimate(spread, (spread, spread))}
+    count = len(swings)
+    note = f"{count} swings of the speed on {runs} ramps"
+    if count <= expected:
+        return Evidence("stiction", 0.0, 1.0, estimates, note)
+    for label, unit, values in (
+        ("build_up", "", [abs(s.build_up) for s in swings]),
+        ("jump", "", [abs(s.jump) for s in swings]),
+        ("dwell", "s", [float(time_s[s.start] - time_s[s.slow]) for s in swings]),
     ):
-        estimates[name] = _median(np.array(values), unit)
-    count = len(stops)
-    ratio = max(0.0, count * np.log(count / expected) - (count - expected))
-    return Evidence(
-        "stiction", float(ratio), poisson_tail(count, expected), estimates, f"{count} stops on {runs} ramps"
-    )
+        estimates[label] = _median(np.array(values), unit)
+    ratio = float(count * np.log(count / expected) - (count - expected))
+    return Evidence("stiction", ratio, poisson_tail(count, expected), estimates, note)
 
 
 def _ramps(drive: FloatArray, time_s: FloatArray) -> list[tuple[int, int]]:
@@ -111,30 +117,29 @@ def _ramps(drive: FloatArray, time_s: FloatArray) -> list[tuple[int, int]]:
     return found
 
 
-def _stops_in(
-    rows: slice, smooth: FloatArray, speed: FloatArray, pressure: FloatArray, speed_noise: float, period_s: float
-) -> tuple[list[_Stop], int]:
-    """Stops on one ramp and whether the ramp moves the stem fast enough to see one."""
-    v = speed[rows] * np.sign(pressure[rows.stop - 1] - pressure[rows.start])
-    fast = float(np.mean(v[v > _RESTS * speed_noise])) if (v > _RESTS * speed_noise).any() else 0.0
-    high, low = max(_MOVES * speed_noise, 0.3 * fast), max(_RESTS * speed_noise, 0.1 * fast)
-    if fast < 1.5 * _MOVES * speed_noise:
-        return [], 0
-    moving = np.flatnonzero(v > high)
-    still = v < low
-    stops = []
-    for start, stop in _true_runs(still):
-        inside = moving.size and moving[0] < start and moving[-1] >= stop
-        if inside and (stop - start) * period_s >= _SHORTEST_S:
-            nxt = next((a for a, _ in _true_runs(still) if a >= stop), v.size - 1)
-            a, b, c = rows.start + start, rows.start + stop, rows.start + nxt
-            stops.append(_Stop(a, b, float(pressure[b - 1] - pressure[a]), float(smooth[c] - smooth[b - 1])))
-    return stops, 1
+def _moving(v: FloatArray, speed_noise: float) -> slice | None:
+    """Rows from the first to the last clear motion along the ramp; None if the stem moves too slowly to tell."""
+    clear = np.flatnonzero(v > _CLEAR * speed_noise)
+    if clear.size == 0:
+        return None
+    rows = slice(int(clear[0]), int(clear[-1]) + 1)
+    return rows if float(v[rows].mean()) > 1.5 * _CLEAR * speed_noise else None
 
 
-def _true_runs(flags: npt.NDArray[np.bool_]) -> list[tuple[int, int]]:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+def _swings(v: FloatArray, first: int, smooth: FloatArray, pressure: FloatArray, speed_noise: float) -> list[_Swing]:
+    """Swings fast - slow - fast of the speed `v`, whose first row is row `first` of the recording."""
+    reach = max(_CLEAR * speed_noise, _SWING * float(v.mean()))
+    state = np.where(v > v.mean() + reach, 1, np.where(v < v.mean() - reach, -1, 0))
+    said = np.flatnonzero(state)
+    turns = said[np.flatnonzero(np.diff(state[said], prepend=0))]
+    fast = [int(row) for row in turns if state[row] > 0]
+    slow = [int(row) for row in turns if state[row] < 0]
+    swings = []
+    for one, two in pairwise(fast):
+        middle = next(row for row in slow if one < row < two)
+        a, b = first + one, first + two
+        swings.append(_Swing(first + middle, b, float(pressure[b] - pressure[a]), float(smooth[b] - smooth[a])))
+    return swings
 
 
 def _median(values: FloatArray, unit: str) -> Estimate:
