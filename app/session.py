@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from hal.clock import Clock
     from hal.profile import Profile
     from hal.safety import SafeBench
+    from sim_device.sealed import Sealed
+    from sim_device.valve import ValvePhysics
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -30,6 +32,7 @@ class Session:
     clock: Clock
     profile: Profile
     virtual: Mapping[str, object]
+    sealed: Sealed | None = None
 
     @property
     def aux_units(self) -> dict[str, str]:
@@ -68,6 +71,13 @@ def bench_options(command: F) -> F:
     return command
 
 
+def sealed_option(command: F) -> F:
+    """`--sealed SEED`: a virtual valve with something, or nothing, wrong with it, for a blind check."""
+    return click.option(
+        "--sealed", metavar="SEED", help="A virtual valve with something, or nothing, wrong: drawn, not told."
+    )(command)
+
+
 def record_options(command: F) -> F:
     """`--out --note --operator --live`: what is kept of a run, and who watches."""
     options = (
@@ -92,11 +102,13 @@ def open_bench(
     effects: Sequence[str] = (),
     real_time: bool = False,
     acknowledge: bool = False,
+    sealed: str | None = None,
+    families: Sequence[str] = ("thesis", "reference"),
 ) -> Iterator[Session]:
     """Opens the bench of a profile at `port`; without one, a virtual valve with plant `physics`.
 
     `options` go to the plant (`effects={"stiction": 0.4}`, `noise=0.0`, its design numbers); `effects` are more of
-    them as words, "stiction=0.4".
+    them as words, "stiction=0.4". `sealed` draws plant and faults from a seed, out of `families`.
     However the context is left, the valve is at its safe command and the port is closed.
     Raises: `BadInput`, `PortFault`, `WireFault`, `SafetyTrip`.
     """
@@ -109,9 +121,9 @@ def open_bench(
 
     found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
     if port is not None:
-        if physics or options or real_time or effects:
+        if physics or options or real_time or effects or sealed:
             raise BadInput(
-                "--physics, --effect and --real-time belong to the virtual valve; leave them out with --port"
+                "--physics, --effect, --sealed and --real-time belong to the virtual valve; leave them out with --port"
             )
         clock: Clock = RealClock()
         latch = Latch.of_port(port)
@@ -124,6 +136,12 @@ def open_bench(
     plant_options = dict(options or {})
     if effects:
         plant_options["effects"] = _parse_effects(effects)
+    if sealed is not None:
+        if physics or plant_options:
+            raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics and --effect")
+        with _sealed(found, sealed, families, real_time) as session:
+            yield session
+        return
     with _virtual(found, physics, seed, plant_options, real_time) as session:
         yield session
 
@@ -144,26 +162,41 @@ def _parse_effects(words: Sequence[str]) -> dict[str, float]:
 
 
 @contextmanager
+def _sealed(profile: Profile, seed: str, families: Sequence[str], real_time: bool) -> Iterator[Session]:
+    from sim_device.sealed import draw
+
+    drawn = draw(seed, families)
+    said: dict[str, object] = {"physics": f"{drawn.family}, sealed", "commitment": drawn.commitment}
+    with _served(profile, drawn.physics, said, real_time, drawn) as session:
+        yield session
+
+
+@contextmanager
 def _virtual(
     profile: Profile, physics: str | None, seed: int, options: dict[str, object], real_time: bool
 ) -> Iterator[Session]:
+    from sim_device.physics.catalog import make_physics
+
+    name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
+    said: dict[str, object] = {"physics": name, "seed": seed, "options": options}
+    with _served(profile, make_physics(name, seed, **options), said, real_time) as session:
+        yield session
+
+
+@contextmanager
+def _served(
+    profile: Profile, plant: ValvePhysics, said: dict[str, object], real_time: bool, sealed: Sealed | None = None
+) -> Iterator[Session]:
+    """Puts a plant behind Modbus frames on a pseudo-terminal and opens the bench there."""
     from hal.clock import RealClock, SteppedClock
     from hal.modbus_bench import ModbusBench
     from hal.safety import SafeBench
-    from sim_device.physics.catalog import make_physics
     from sim_device.server import VirtualDevice
 
-    name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
     clock: Clock = RealClock() if real_time else SteppedClock()
-    plant = make_physics(name, seed, **options)
-    said: dict[str, object] = {
-        "physics": name,
-        "seed": seed,
-        "options": options,
-        "time": "real" if real_time else "stepped",
-    }
+    said = {**said, "time": "real" if real_time else "stepped"}
     with VirtualDevice(profile, plant, clock) as device:
         # A pseudo-terminal has no bits on a wire, so there is no silence to keep between frames.
-        inner = ModbusBench(profile, device.port, clock, pacing="none")
+        inner = ModbusBench(profile, device.port, clock, pacing="none", margin_s=2.0)
         with SafeBench(inner, profile.limits, clock) as bench:
-            yield Session(bench, clock, profile, said)
+            yield Session(bench, clock, profile, said, sealed)

@@ -47,6 +47,6 @@ def open_to_look(
     name = physics or ("positioner" if found.command_unit == "percent" else "thesis")
     with (
         VirtualDevice(found, make_physics(name, seed, **options), clock) as device,
-        ModbusBench(found, device.port, clock, pacing="none", read_only=True) as bench,
+        ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,
     ):
         yield bench, clock

@@ -39,6 +39,7 @@ def command(
     from app.session import open_bench
     from hal.latch import Latch
     from hal.profile import load_profile
+    from hal.signals import stop_signals
 
     found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
     moves = [_parse(step) for step in steps]
@@ -49,9 +50,9 @@ def command(
     )
     if port is not None:
         Latch.of_port(port).check()
-    with open_bench(
-        port, found, physics=physics, seed=seed, effects=effects, real_time=real_time or (port is None and not steps)
-    ) as session:
+    live = real_time or (port is None and not steps)
+    opening = open_bench(port, found, physics=physics, seed=seed, effects=effects, real_time=live)
+    with stop_signals() as stop, opening as session:
         at = session.command_in_force
 
         def commands() -> Iterator[tuple[float, float | None]]:
@@ -65,7 +66,7 @@ def command(
                 click.echo(f"-> {at:g} {unit}")
                 yield at, dwell_s
 
-        hold(session, commands(), period_s)
+        hold(session, commands(), period_s, stop)
     click.echo("the valve is at its safe command")
 
 

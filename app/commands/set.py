@@ -36,6 +36,7 @@ def command(
     from hal.errors import BadInput
     from hal.latch import Latch
     from hal.profile import load_profile
+    from hal.signals import stop_signals
 
     if value is None and not acknowledge:
         raise BadInput("give the command to hold, for example `lostmotion set 8.5`, or --acknowledge")
@@ -50,15 +51,11 @@ def command(
     else:
         end = "until Ctrl-C" if hold_s is None else f"for {hold_s:g} s"
         click.echo(f"the valve will go to {value:g} {unit} and be held there {end}, then go to its safe command")
-    with open_bench(
-        port,
-        found,
-        physics=physics,
-        seed=seed,
-        effects=effects,
-        real_time=real_time or (port is None and hold_s is None),
-        acknowledge=acknowledge,
-    ) as session:
+    live = real_time or (port is None and hold_s is None)
+    opening = open_bench(
+        port, found, physics=physics, seed=seed, effects=effects, real_time=live, acknowledge=acknowledge
+    )
+    with stop_signals() as stop, opening as session:
         if value is not None:
-            hold(session, [(value, hold_s)], period_s)
+            hold(session, [(value, hold_s)], period_s, stop)
     click.echo("the valve is at its safe command")

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import json
+import signal
+import subprocess
+import sys
 from collections.abc import Iterator
 
 import pytest
@@ -172,3 +175,16 @@ def test_bad_input_gets_one_sentence_and_its_exit_code(capsys, words, code, sent
     got, said = fails(capsys, *words)
     assert got == code
     assert sentence in said
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_every_signal_leaves_the_valve_at_its_safe_command(device, name) -> None:
+    words = [sys.executable, "-m", "app", "set", "9", "--port", device.port, "--period", "0.1"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        while "good" not in process.stdout.readline():  # the first reading: the command has been sent
+            assert process.poll() is None
+        assert device.rig.command == 9.0
+        process.send_signal(getattr(signal, name))
+        assert process.wait(20) == 130
+    assert device.rig.command == 0.0

@@ -6,6 +6,7 @@ import threading
 
 import pytest
 
+from hal.deadman import Deadman
 from hal.errors import BenchFault, PortFault, SafetyTrip, WireFault
 from hal.fake import FakeBench
 from hal.latch import Latch
@@ -126,6 +127,23 @@ def test_the_dead_mans_thread_ends_with_the_bench() -> None:
         assert any(thread.name == "deadman" for thread in threading.enumerate())
     assert not any(thread.name == "deadman" for thread in threading.enumerate())
     assert rig.fake.reasons[0] == "normal end"
+
+
+def test_every_exchange_feeds_the_dead_mans_thread() -> None:
+    class Counted(Deadman):
+        fed = 0
+
+        def feed(self) -> None:
+            self.fed += 1
+
+    rig = Rig()
+    counted = Counted(60.0, lambda: None)
+    rig.safe._deadman = counted
+    with rig.safe:
+        before = counted.fed
+        rig.tick()
+        rig.tick()
+        assert counted.fed == before + 2
 
 
 def test_a_stall_inside_an_exchange_ends_that_exchange() -> None:
