@@ -47,24 +47,30 @@ class Trace:
 def run_trial(
     opened: Opened, controller: Controller[Any], targets_in: FloatArray, period_s: float, start_psi: float = 0.0
 ) -> Trace:
-    """Runs the loop: write the command and read, decide, wait for the next tick.
+    """Opens the bench, runs the loop, and leaves the valve in its safe state."""
+    with opened.bench:
+        return follow_targets(opened, controller, targets_in, period_s, start_psi)
+
+
+def follow_targets(
+    opened: Opened, controller: Controller[Any], targets_in: FloatArray, period_s: float, start_psi: float = 0.0
+) -> Trace:
+    """The loop on an open bench: write the command and read, decide, wait for the next tick.
 
     As on any bench, what is decided on the readings of tick k goes out in tick k + 1.
     """
-    rows: FloatArray = np.empty((targets_in.size, 5))
-    command_psi = start_psi
+    rows: FloatArray = np.empty((targets_in.size, 4))
+    bench, command_psi = opened.bench, start_psi
     origin_s = opened.clock.now_s()
-    with opened.bench as bench:
+    sample = bench.exchange(command_psi)
+    state = controller.initial(sample, float(targets_in[0]))
+    for tick, target_in in enumerate(targets_in):
+        pressure = sample.pressure.value if sample.pressure is not None else float("nan")
+        x = sample.position.value
+        rows[tick] = (command_psi, pressure, x, opened.truth_in() if opened.truth_in is not None else x)
+        state, command_psi = controller.step(state, sample, float(target_in), period_s)
+        opened.clock.sleep_until(origin_s + (tick + 1) * period_s)
         sample = bench.exchange(command_psi)
-        state = controller.initial(sample, float(targets_in[0]))
-        for tick, target_in in enumerate(targets_in):
-            pressure = sample.pressure.value if sample.pressure is not None else float("nan")
-            x = sample.position.value
-            truth = opened.truth_in() if opened.truth_in is not None else x
-            rows[tick] = (sample.time_s, command_psi, pressure, x, truth)
-            state, command_psi = controller.step(state, sample, float(target_in), period_s)
-            opened.clock.sleep_until(origin_s + (tick + 1) * period_s)
-            sample = bench.exchange(command_psi)
-    command, pressure_psi, position_in, truth_in = (rows[:, column].copy() for column in range(1, 5))
+    command, pressure_psi, position_in, truth_in = (rows[:, column].copy() for column in range(4))
     time_s = origin_s + period_s * np.arange(targets_in.size, dtype=np.float64)
     return Trace(time_s, targets_in, command, pressure_psi, position_in, truth_in)

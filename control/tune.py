@@ -74,7 +74,7 @@ def tune(design: DesignModel, tick_s: float, dead_time_s: float = 0.0) -> list[T
 def margins(loop: LinearLoop, design: DesignModel) -> Margins:
     """How far a loop is from hunting."""
     gain = _limit(lambda f: hunts(replace(loop, kp=f * loop.kp, ki=f * loop.ki), design), 1.0, MOST)
-    delay = _limit(lambda d: hunts(replace(loop, dead_time_s=loop.dead_time_s + d), design), 0.01, 20.0)
+    delay = _limit(lambda d: hunts(replace(loop, dead_time_s=loop.dead_time_s + d), design), 0.05, 20.0)
     return Margins(gain, delay, phase_margin(loop, design))
 
 
@@ -83,7 +83,7 @@ def hunts(loop: LinearLoop, design: DesignModel) -> bool:
     omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 400)
     line = loop(omega) * design.compliance
     crossing = (np.diff(np.sign(line.imag)) != 0) & (line.real[:-1] < -1.0)
-    return bool(crossing.any()) or any(cycle.stable for cycle in predict(loop, design, n=80, points=400))
+    return bool(crossing.any()) or any(cycle.stable for cycle in predict(loop, design, n=60, points=300))
 
 
 def phase_margin(loop: LinearLoop, design: DesignModel) -> float:
@@ -105,9 +105,9 @@ def _largest(make: Callable[[float], LinearLoop], design: DesignModel) -> Linear
 def _limit(bad: Callable[[float], bool], low: float, high: float) -> float:
     """Where `bad` begins, to 1 %, on the good side; infinite where it does not begin below `high`.
 
-    Goes up in steps of at most 20 %: `bad` need not be monotonic far above the point where it begins.
+    Goes up in steps of at most 40 %: `bad` need not be monotonic far above the point where it begins.
     """
-    good, step = low, 1.2
+    good, step = low, 1.4
     while good < high:
         if bad(good * step):
             if step < 1.01:

@@ -16,7 +16,7 @@ from app.physics_bench import open_virtual
 from app.session import open_bench
 from control.controller import make_controller
 from control.design import DesignModel, save_design
-from control.trial import Opened, run_trial
+from control.trial import Opened, follow_targets, run_trial
 from hal.errors import BadInput
 
 DESIGN = DesignModel()
@@ -32,7 +32,7 @@ def test_a_trial_without_a_wire_is_the_trial_over_modbus(name: str) -> None:
     controller = make_controller(name, DESIGN)
     near = run_trial(open_virtual(5, noise=0.0), controller, targets, 0.1)
     with open_bench(seed=5, options={"noise": 0.0}) as session:
-        wired = run_trial(Opened(session.bench, session.clock), controller, targets, 0.1)
+        wired = follow_targets(Opened(session.bench, session.clock), controller, targets, 0.1)
     assert np.abs(near.position_in - wired.position_in).max() < 0.01 * DESIGN.travel
 
 
