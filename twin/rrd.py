@@ -11,7 +11,7 @@ from hal.errors import BadInput
 from logs.plane import Plane
 from logs.recording import FloatArray
 from twin.diagnosis import Diagnosis
-from twin.report.series import Series, thin
+from twin.report.series import IntArray, Series, thin
 from twin.report.story import story
 from twin.where.regime import REGIMES, classify
 
@@ -30,6 +30,7 @@ COMMAND: Colour = (110, 168, 254)
 _STATES = {"deadband": 0x78909CFF, "moving": 0x66BB6AFF, "reversal": 0xFFB74DFF, "end_stop": 0xBA68C8FF}
 _HELD = {"held out": 0x26BEB4FF, "fitted": 0x455A64FF}
 _PLANE_POINTS = 40_000
+_LINE_POINTS = 60_000  # more than any screen shows, and a file of a few MB however long the record
 _TRAIL_S = 30.0
 _STRIP = 12
 
@@ -71,26 +72,33 @@ def _send_lines(stream: rr.RecordingStream, diagnosis: Diagnosis, series: Series
     models = {label: series.percent(values) for label, values in error.items() if values is not None}
     position = series.percent(series.position)
     floor = np.full(time.size, diagnosis.gap.noise_floor)
+    rows = np.union1d(thin(position, _LINE_POINTS), thin(position - models["design model"], _LINE_POINTS))
     drive = {"command": series.command} | ({} if series.pressure is None else {"pressure": series.pressure})
     residual = {label: position - values for label, values in models.items()}
-    _send(stream, "/drive", time, drive, [COMMAND, MEASURED])
-    _send(stream, "/position", time, {"measured": position} | models, [MEASURED, *(colours[m] for m in models)])
+    _send(stream, "/drive", time, rows, drive, [COMMAND, MEASURED])
+    _send(stream, "/position", time, rows, {"measured": position} | models, [MEASURED, *(colours[m] for m in models)])
     band = {"floor +2 sigma": 2.0 * floor, "floor -2 sigma": -2.0 * floor}
-    _send(stream, "/residual", time, residual | band, [*(colours[m] for m in residual), FLOOR, FLOOR])
+    _send(stream, "/residual", time, rows, residual | band, [*(colours[m] for m in residual), FLOOR, FLOOR])
     running = {label: _running_rms(values) for label, values in residual.items()}
-    _send(stream, "/running", time, running | {"floor": floor}, [*(colours[m] for m in running), FLOOR])
+    _send(stream, "/running", time, rows, running | {"floor": floor}, [*(colours[m] for m in running), FLOOR])
 
 
 def _send(
-    stream: rr.RecordingStream, entity: str, time: FloatArray, lines: dict[str, FloatArray], colours: list[Colour]
+    stream: rr.RecordingStream,
+    entity: str,
+    time: FloatArray,
+    rows: IntArray,
+    lines: dict[str, FloatArray],
+    colours: list[Colour],
 ) -> None:
+    """Those rows of a few lines that share a plot."""
     import rerun as rr
 
     names = list(lines)
     style = rr.SeriesLines(names=names, colors=colours[: len(names)], widths=[1.5] * len(names))
     stream.log(entity, style, static=True)
-    block = np.column_stack(list(lines.values()))
-    index = [rr.TimeColumn("run_time", duration=time)]
+    block = np.column_stack([values[rows] for values in lines.values()])
+    index = [rr.TimeColumn("run_time", duration=time[rows])]
     stream.send_columns(entity, indexes=index, columns=rr.Scalars.columns(scalars=block))
 
 
