@@ -25,8 +25,6 @@ if TYPE_CHECKING:
 FAMILIES = ("thesis", "reference")
 SHARES = {"none": 0.25, "effect": 0.40, "parameter": 0.10, "effects": 0.15, "outsider": 0.10}
 GRADES = ("small", "medium", "large")
-# The reference valve has its friction inside the balance of forces from birth: that is its baseline, not a fault.
-NOT_DRAWN = {"reference": frozenset({"friction_in_motion"})}
 FILE_NAME = "sealed.json"
 FORMAT = 1
 _SPREAD = 0.12  # sizes are spread by this many decades either way about their grade
@@ -71,6 +69,7 @@ class Sealed:
     physics: ValvePhysics
     commitment: str
     family: str
+    families: tuple[str, ...] = FAMILIES
 
 
 def draw(seed: int | str, families: Sequence[str] = FAMILIES) -> Sealed:
@@ -81,7 +80,7 @@ def draw(seed: int | str, families: Sequence[str] = FAMILIES) -> Sealed:
     label = reveal(seed, families)
     effects = {cause.key: cause.size for cause in label.causes}
     physics = make_physics(label.family, label.physics_seed, effects=effects)
-    return Sealed(physics, commit(label, salt_of(seed)), label.family)
+    return Sealed(physics, commit(label, salt_of(seed)), label.family, tuple(families))
 
 
 def reveal(seed: int | str, families: Sequence[str] = FAMILIES) -> Label:
@@ -103,9 +102,7 @@ def _causes(dice: random.Random, kind: str, family: str) -> tuple[Cause, ...]:
         return ()
     pool: Sequence[Imperfection] = parameters(family)
     if kind != "parameter":
-        banned = NOT_DRAWN.get(family, frozenset())
-        known = [item for item in imperfections(family) if item.name not in banned]
-        pool = [item for item in known if item.outsider == (kind == "outsider")]
+        pool = [item for item in imperfections(family) if item.outsider == (kind == "outsider")]
     chosen = []
     for _ in range(2 if kind == "effects" else 1):
         item = pool[int(dice.random() * len(pool))]
@@ -146,13 +143,13 @@ def commit(label: Label, salt: str) -> str:
     return hashlib.sha256(f"{salt}|{label.canonical()}".encode()).hexdigest()
 
 
-def write(path: Path, sealed: Sealed, families: Sequence[str] = FAMILIES) -> Path:
+def write(path: Path, sealed: Sealed) -> Path:
     """Writes the commitment into `path`, or as `sealed.json` if that is a folder: hash and families, no label.
 
     Raises: `BadInput` when the file cannot be written.
     """
     path = path / FILE_NAME if path.is_dir() else path
-    content = {"format": FORMAT, "commitment": sealed.commitment, "families": list(families)}
+    content = {"format": FORMAT, "commitment": sealed.commitment, "families": list(sealed.families)}
     try:
         path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
     except OSError as error:

@@ -53,7 +53,6 @@ def test_a_label_says_as_many_causes_as_its_kind() -> None:
         names = [cause.name for cause in label.causes]
         assert len(set(names)) == len(names) == {"none": 0, "effects": 2}.get(label.kind, 1)
         assert all(name.startswith("parameter:") for name in names) == (label.kind in ("parameter", "none"))
-        assert label.family != "reference" or "friction_in_motion" not in names
 
 
 def test_every_label_that_can_be_drawn_makes_a_valve() -> None:

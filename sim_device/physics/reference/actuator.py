@@ -1,4 +1,4 @@
-"""The actuator: needle, diaphragm chamber with moving volume, spring, stops and the balance of forces on the stem."""
+"""The actuator: tube, diaphragm chamber with moving volume, spring, stops and the balance of forces on the stem."""
 
 from __future__ import annotations
 
@@ -26,17 +26,9 @@ IMPERFECTIONS = (
         "asymmetric_damping",
         "actuator",
         "1",
-        (0.035, 0.12, 0.5),
-        "The check valve beside the needle leaks: exhausting the chamber has (1 + size) times the conductance.",
+        (0.07, 0.23, 1.5),
+        "The check valve of the hydraulic damper leaks: opening meets 1/(1 + size) of its drag.",
         limit=20.0,
-    ),
-    Imperfection(
-        "friction_in_motion",
-        "actuator",
-        "1",
-        (0.045, 0.15, 0.9),
-        "This share of the needle's resistance is taken out and put into viscous drag of the stem instead.",
-        limit=0.95,
     ),
     Imperfection(
         "creep",
@@ -58,10 +50,10 @@ IMPERFECTIONS = (
     Imperfection(
         "additional_lag",
         "actuator",
-        "l",
-        (0.1, 0.3, 1.0),
-        "A damping tank of `size` litres in the middle of the needle line.",
-        limit=30.0,
+        "s",
+        (0.065, 0.2, 0.73),
+        "A worn elastic coupling: the plug, with a drag of its own, follows the stem with `size`.",
+        limit=10.0,
     ),
     Imperfection(
         "flow_force",
@@ -85,7 +77,7 @@ IMPERFECTIONS = (
         "diaphragm_hole",
         "actuator",
         "mm2",
-        (0.0066, 0.02, 0.073),
+        (0.06, 0.18, 0.62),
         "A torn diaphragm leaks through `size` when fully stretched and through nothing when the valve is open.",
         limit=5.0,
         outsider=True,
@@ -103,34 +95,28 @@ IMPERFECTIONS = (
         "water_slug",
         "actuator",
         "1",
-        (0.08, 0.23, 0.5),
-        "Water in the tubing takes `size` of the needle's conductance for 7 s, in one of three spells of 14 s.",
-        limit=0.99,
+        (1.2, 3.2, 12.0),
+        "Water in the tubing cuts its conductance to 1/(1 + size) for 7 s, in one of three spells of 14 s.",
+        limit=1.0e4,
         outsider=True,
     ),
 )
 
 _RELAX_S = (10.0, 70.0)
 _HEATING_S = 170.0
-_SMALLEST_TANK_L = 0.02  # below this the fitting itself is the tank, and the explicit step would be too long
+_SHUT_M_S = 2.0e-5  # what the damper still lets through with its pin fully in
 _PLUG_M2 = 1.5 * INCH * INCH
 
 
 @compiled
-def _needle(q: Any, s: Any, upstream: float, downstream: float, halves: float) -> float:
-    """Mass flow through the needle from one gauge pressure to another [Pa]; kg/s.
-
-    With `halves` = 2 it is one of two halves of the needle in series, which together pass what the whole one does.
-    """
-    laminar = 1.0 - (1.0 - q.needle_laminar) / halves
-    conductance = q.needle * math.sqrt(halves) / (1.0 - q.friction_in_motion)
-    if upstream < downstream:
-        conductance *= 1.0 + q.asymmetric_damping
+def _tube(q: Any, s: Any) -> float:
+    """Mass flow from the line into the chamber [kg/s]."""
+    conductance = q.tube
     if q.water_slug > 0.0:
         window = int(s.time / 14.0)
         if uniform(s.seed, TELEGRAPH, 1000 + window) < 0.33 and s.time - 14.0 * window < 7.0:
-            conductance *= 1.0 - q.water_slug
-    return flow(conductance, q.needle_b, laminar, upstream + ATMOSPHERE, downstream + ATMOSPHERE)
+            conductance /= 1.0 + q.water_slug
+    return flow(conductance, q.tube_b, q.tube_laminar, s.line + ATMOSPHERE, s.chamber + ATMOSPHERE)
 
 
 @compiled
@@ -144,18 +130,11 @@ def _hole(q: Any, s: Any) -> float:
 
 @compiled
 def fill(q: Any, s: Any, booster: float, booster_slope: float, h: float) -> None:
-    """Advances line, damping tank and chamber by `h` seconds, given the booster's flow and its slope."""
+    """Advances line and chamber by `h` seconds, given the booster's flow and its slope."""
     stiffness = q.polytropic * GAS
-    if q.additional_lag > 0.0:
-        into_tank = _needle(q, s, s.line, s.tank, 2.0)
-        into_chamber = _needle(q, s, s.tank, s.chamber, 2.0)
-        s.tank += h * stiffness * (into_tank - into_chamber) / (1.0e-3 * max(q.additional_lag, _SMALLEST_TANK_L))
-        leaves_line = into_tank
-    else:
-        into_chamber = _needle(q, s, s.line, s.chamber, 1.0)
-        leaves_line = into_chamber
+    into_chamber = _tube(q, s)
     gain = h * stiffness / q.line_volume
-    s.line += gain * (booster - leaves_line) / (1.0 - gain * booster_slope)
+    s.line += gain * (booster - into_chamber) / (1.0 - gain * booster_slope)
     if q.diaphragm_hole > 0.0:
         into_chamber -= _hole(q, s)
     volume = q.chamber_volume + AREA * s.x
@@ -208,29 +187,44 @@ def _contact(q: Any, s: Any, h: float) -> tuple[float, float]:
 
 
 @compiled
+def _damper(q: Any, s: Any) -> tuple[float, float]:
+    """The hydraulic damper as `force + slope * v` around the present speed: a gap, then the flow regulator."""
+    drag = q.damper
+    ahead = q.travel - s.x
+    if s.v < 0.0:
+        drag /= 1.0 + q.asymmetric_damping
+        ahead = s.x
+    bound = min(q.damper_speed, max(ahead, 0.0) / q.damper_taper + _SHUT_M_S)
+    if abs(s.v) <= bound:
+        return 0.0, float(drag)
+    return float(-math.copysign(q.damper_over * bound, s.v)), float(drag + q.damper_over)
+
+
+@compiled
+def _plug(q: Any, s: Any, h: float) -> float:
+    """Moves the plug behind a worn coupling; returns the force with which it holds the stem back [N]."""
+    if q.additional_lag == 0.0:
+        s.plug = s.x
+        return 0.0
+    s.plug += (s.x - s.plug) * h / (q.additional_lag + h)
+    return float(q.coupling * (s.x - s.plug))
+
+
+@compiled
 def push(q: Any, s: Any, h: float) -> None:
     """Moves the stem by `h` seconds: all stiff forces are linear in the new speed, which is then solved for."""
     area = AREA * (1.0 - q.area_loss * s.x / q.travel)
-    drive = s.chamber * area - _spring_force(q, s) - _fluid_force(q, s)
+    drive = s.chamber * area - _spring_force(q, s) - _fluid_force(q, s) - _plug(q, s, h)
     if q.creep > 0.0:
         drive -= _relaxing(q, s, s.v, h)
     if q.distributed_hysteresis > 0.0:
         drive -= soft_rings(q, s, s.v, h)
     grip, grip_slope = bristles(q, s, h)
     stop, stop_slope = _contact(q, s, h)
+    oil, oil_slope = _damper(q, s)
     gas = q.polytropic * (s.chamber + ATMOSPHERE) * area * area / (q.chamber_volume + AREA * s.x)
-    drag = q.friction_in_motion * _needle_drag(q)
-    slope = grip_slope + stop_slope + drag + h * (q.spring + gas)
-    v = (q.mass * s.v / h + drive - grip - stop) / (q.mass / h + slope)
+    slope = grip_slope + stop_slope + oil_slope + h * (q.spring + gas)
+    v = (q.mass * s.v / h + drive - grip - stop - oil) / (q.mass / h + slope)
     settle_bristles(q, s, v, h)
     s.v = v
     s.x += h * v
-
-
-@compiled
-def _needle_drag(q: Any) -> float:
-    """The viscous drag that the needle amounts to for slow motion around mid-pressure [N s/m]."""
-    upstream = ATMOSPHERE + 9.0 * PSI
-    drop = 0.2 * PSI
-    mass_flow = flow(q.needle, q.needle_b, q.needle_laminar, upstream, upstream - drop)
-    return float(AREA * drop / (mass_flow * GAS / upstream / AREA))

@@ -24,9 +24,9 @@ PARAMETERS = (
     Imperfection(
         "parameter:compliance", "actuator", "1", (0.0055, 0.016, 0.055), "A spring softer by `size`.", signed=True
     ),
-    Imperfection("parameter:tau", "actuator", "1", (0.04, 0.12, 0.4), "Grease thickens tau by `size`."),
+    Imperfection("parameter:tau", "actuator", "1", (0.04, 0.12, 0.42), "The damper slows by `size`.", signed=True),
     Imperfection(
-        "parameter:rate_limit", "actuator", "1", (0.028, 0.075, 0.25), "The needle is in by `size`.", signed=True
+        "parameter:rate_limit", "actuator", "1", (0.06, 0.15, 0.4), "The regulator is shut by `size`.", signed=True
     ),
     Imperfection("parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "A larger signal chamber.", signed=True),
 )
@@ -53,17 +53,13 @@ def _rebuilt(b: Build, name: str, size: float) -> Build:
         case "offset" if size > -5:
             return replace(b, preload=b.preload + size * PSI * AREA)
         case "compliance" if size > -0.9:
-            # a softer spring alone would also slow the valve; thinner grease and a freer gap make up for that
-            laminar = 1 - (1 - b.needle_laminar) / (1 + size) ** 2
-            return replace(b, spring=b.spring / (1 + size), viscous=b.viscous / (1 + size), needle_laminar=laminar)
-        case "tau" if size > -0.25:
-            # the packing's drag is some 0.3 of what makes tau; the needle makes the rest
-            return replace(b, viscous=b.viscous * (1 + 3.5 * size))
-        case "rate_limit" if -0.9 < size < 0.9:
-            # a tighter needle whose gap is longer: slow motion, which it passes laminar, meets the same resistance
-            narrow = 1 - size
-            laminar = 1 - (1 - b.needle_laminar) * narrow**2
-            return replace(b, needle=b.needle * narrow, needle_laminar=laminar)
+            # a softer spring alone would also slow the valve, so the damper and the packing are set freer
+            freer = 1 / (1 + size)
+            return replace(b, spring=b.spring * freer, viscous=b.viscous * freer, damper=b.damper * freer)
+        case "tau" if size > -0.8:
+            return replace(b, damper=b.damper * (1 + size) + b.viscous * size, damper_taper=b.damper_taper * (1 + size))
+        case "rate_limit" if -2 < size < 0.95:
+            return replace(b, damper_speed=b.damper_speed * (1 - size))
         case "ep_tau" if size > -0.9:
             return replace(b, nozzle_tau=b.nozzle_tau * (1 + size))
     known = ", ".join(item.name for item in PARAMETERS)

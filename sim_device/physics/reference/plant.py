@@ -1,4 +1,8 @@
-"""Family B: the valve from first principles, as independent of family A as one house can make it."""
+"""Family B: the valve from first principles, as independent of family A as one house can make it.
+
+Its friction acts on the moving stem, inside the balance of forces. So `friction_in_motion` is not a fault that it can
+have but what it is when healthy, and who diagnoses it is given a design that says so.
+"""
 
 from __future__ import annotations
 

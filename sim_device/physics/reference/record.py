@@ -26,8 +26,9 @@ class Build:
     Known: diaphragm area (Warren Controls DL49) and travel (thesis). Preload, spring rate and sliding friction follow
     from the thesis's table 2-1 and the area. Of literature's order: mass, packing viscosity and Stribeck speed (Kayihan
     & Doyle 2000, and Garcia 2008, table of a 100 in2 valve: 1.4 kg, 3500 lbf s/in, 0.01 in/s). Air: ISO 6358, with
-    conductances of the order that data sheets give for E/P converters of some 5 scfm and for needle valves. The rest
-    (volumes, presliding stiffness, sensor electronics) is chosen here, plausible, not measured on any valve.
+    conductances of the order that data sheets give for E/P converters of some 5 scfm and for 4 mm tube. The rest
+    (volumes, presliding stiffness, hydraulic speed control, sensor electronics) is chosen here, plausible, not measured
+    on any valve; with it the stem has the time constant and the highest speed of the thesis's.
     """
 
     # E/P converter
@@ -38,27 +39,34 @@ class Build:
     port: float = 3.0e-9  # m3/(s Pa), sonic conductance of supply and exhaust port fully open
     port_b: float = 0.35  # critical pressure ratio
     line_volume: float = 1.5e-4  # m3, booster chamber and 3 m of tubing
-    # speed-control needle between line and diaphragm chamber
-    needle: float = 2.0e-9  # m3/(s Pa)
-    needle_b: float = 0.25
-    needle_laminar: float = 0.967  # pressure ratio above which its long gap flows laminar
+    # tube between the converter and the diaphragm chamber
+    tube: float = 1.2e-8  # m3/(s Pa)
+    tube_b: float = 0.25
+    tube_laminar: float = 0.99  # pressure ratio above which it flows laminar
     # actuator
-    chamber_volume: float = 1.2e-4  # m3 with the valve fully open
-    area_loss: float = 0.03  # share of the effective area that is lost over the stroke
+    chamber_volume: float = 2.5e-4  # m3 with the valve fully open
+    area_loss: float = 0.01  # share of the effective area that is lost over the stroke
     polytropic: float = 1.15
-    preload: float = 7.314 * PSI * AREA  # N
-    spring: float = 4.06e4  # N/m
+    preload: float = 7.316 * PSI * AREA  # N
+    spring: float = 4.34e4  # N/m
     mass: float = 4.0  # kg
     travel: float = 0.5625 * INCH  # m
     stop_stiffness: float = 3.0e8  # N/m
     stop_damping: float = 3.0e5  # N s/m
     # the packing as LuGre bristles
-    sliding: float = 1.4215 * PSI * AREA  # N
+    sliding: float = 1.4405 * PSI * AREA  # N
     breakaway: float = 1.02  # times sliding
     stribeck: float = 2.5e-4  # m/s
-    bristle: float = 6.0e6  # N/m
-    bristle_damping: float = 2.0e4  # N s/m
-    viscous: float = 4.0e4  # N s/m
+    bristle: float = 1.2e7  # N/m
+    bristle_damping: float = 3.0e4  # N s/m
+    viscous: float = 2.0e4  # N s/m
+    # hydraulic speed control on the stem: oil through a gap, a flow regulator that bounds the speed, and a tapered
+    # metering pin that closes the regulator towards the stop ahead, so that the stem lands softly
+    damper: float = 1.0e5  # N s/m
+    damper_speed: float = 0.118 * INCH  # m/s
+    damper_taper: float = 2.7  # s, distance to the stop ahead over the speed that the pin lets through
+    damper_over: float = 5.0e6  # N s/m above that speed
+    coupling: float = 4.2e3  # N/m, of the elastic coupling that only a worn valve has
     # LVDT electronics
     filter_omega: float = 2.0 * np.pi * 25.0  # rad/s, second-order demodulator filter
     filter_damping: float = 0.8
@@ -82,12 +90,12 @@ STATE = np.dtype(
         ("supply", "f8"),
         ("nozzle", "f8"),  # Pa gauge, as all pressures below
         ("line", "f8"),
-        ("tank", "f8"),
         ("chamber", "f8"),
         ("unrest", "f8"),
         ("unrest_tick", "i8"),
         ("x", "f8"),
         ("v", "f8"),
+        ("plug", "f8"),
         ("bristle", "f8"),
         ("rings", "f8", (RINGS,)),
         ("rest", "f8"),

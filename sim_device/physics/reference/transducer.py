@@ -119,7 +119,7 @@ _PRESSURE_NOISE_PSI, _POSITION_NOISE_IN = 0.004, 0.0006
 def _core_place(q: Any, s: Any) -> float:
     """Where the core is in its coil [m]."""
     half = 0.5 * q.linkage_lost_motion * INCH
-    s.core = min(max(s.core, s.x - half), s.x + half)
+    s.core = min(max(s.core, s.plug - half), s.plug + half)
     place = s.core
     if q.loose_core > 0.0:
         window = int(s.time / 3.0)

@@ -37,7 +37,7 @@ def test_size_zero_is_healthy_and_a_large_size_shows(plant: str, item: Imperfect
     assert np.array_equal(response(plant, key, 0.0), healthy)
     form = key.partition("/")[2]
     difference = response(plant, key, item.size(2, form)) - healthy
-    assert np.sqrt(np.mean(difference[1] ** 2)) > 0.0012  # twice the reading noise, even in this short record
+    assert np.max(np.abs(difference[1])) > 0.0025  # four times the reading noise, even in this short record
     if item.stage == "sensor":
         assert np.all(difference[0] == 0.0)
 
