@@ -30,7 +30,7 @@ _SAFE_TRIES = 3
 class ModbusBench:
     """The bench of a profile at a port. Nothing is opened before `with`, nothing written before it is known to be ours.
 
-    `margin_s`: how much longer than wire and device need an answer may take [s]. `pacing` overrides the profile's.
+    `margin_s`: how much longer than wire and device need an answer may take [s]. `pacing` and `backend` override the profile's.
     `acknowledge`: a person has looked at the valve; a device that has taken over is given back to us.
     `read_only`: nothing is ever written, on entering and leaving neither; only `observe` works.
     A tick without a trusted answer is a sample whose readings are `MISSING`; the safety layer counts them.
@@ -42,7 +42,7 @@ class ModbusBench:
         port: str,
         clock: Clock,
         *,
-        backend: str = "native",
+        backend: str | None = None,
         margin_s: float = 0.25,
         pacing: str | None = None,
         acknowledge: bool = False,
@@ -53,7 +53,7 @@ class ModbusBench:
             serial = profile.serial.model_copy(update={"pacing": pacing})
             profile = profile.model_copy(update={"serial": serial})
         self.profile = profile
-        self.bus = bus or make_bus(profile, port, clock, backend=backend, margin_s=margin_s)
+        self.bus = bus or make_bus(profile, port, clock, backend=backend or profile.serial.backend, margin_s=margin_s)
         self._port = port
         self._clock = clock
         self._acknowledge = acknowledge

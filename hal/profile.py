@@ -27,6 +27,7 @@ class Serial(Part):
     parity: Literal["N", "E", "O"] = "N"
     stop_bits: Literal[1, 2] = 1
     pacing: Literal["spec", "none"] = "spec"
+    backend: Literal["native", "pymodbus"] = "native"
 
     @property
     def char_s(self) -> float:

@@ -54,7 +54,8 @@ def tick(bench: Bench, clock: SteppedClock, command: float, dt_s: float = 0.1):
 
 @pytest.mark.parametrize("backend", ["native", "pymodbus"])
 def test_one_transaction_a_tick_brings_everything(backend) -> None:
-    with virtual() as (device, clock), bench_at(device, clock, backend=backend) as bench:
+    profile = VIRTUAL.model_copy(update={"serial": VIRTUAL.serial.model_copy(update={"backend": backend})})
+    with virtual() as (device, clock), bench_at(device, clock, profile) as bench:
         before = bench.bus.stats.transactions
         for _ in range(30):
             sample = tick(bench, clock, 8.0)
