@@ -30,7 +30,8 @@ _SAFE_TRIES = 3
 class ModbusBench:
     """The bench of a profile at a port. Nothing is opened before `with`, nothing written before it is known to be ours.
 
-    `margin_s`: how much longer than wire and device need an answer may take [s]. `pacing` and `backend` override the profile's.
+    `margin_s`: how much longer than wire and device need an answer may take [s].
+    `pacing` and `backend` override the profile's.
     `acknowledge`: a person has looked at the valve; a device that has taken over is given back to us.
     `read_only`: nothing is ever written, on entering and leaving neither; only `observe` works.
     A tick without a trusted answer is a sample whose readings are `MISSING`; the safety layer counts them.
