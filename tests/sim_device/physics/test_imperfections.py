@@ -12,7 +12,7 @@ from sim_device.physics.imperfection import Imperfection
 from sim_device.physics.offline import record
 from tests.sim_device.physics.excitation import Array, lively
 
-SECONDS = {"thesis": 150, "reference": 90}
+SECONDS = {"thesis": 150, "reference": 150}
 
 
 @cache
@@ -37,7 +37,7 @@ def test_size_zero_is_healthy_and_a_large_size_shows(plant: str, item: Imperfect
     assert np.array_equal(response(plant, key, 0.0), healthy)
     form = key.partition("/")[2]
     difference = response(plant, key, item.size(2, form)) - healthy
-    assert np.max(np.abs(difference[1])) > 0.0025  # four times the reading noise, even in this short record
+    assert np.max(np.abs(difference[1])) > 0.002  # three times the reading noise, even in this short record
     if item.stage == "sensor":
         assert np.all(difference[0] == 0.0)
 
