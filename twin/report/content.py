@@ -122,8 +122,7 @@ def cause_rows(causes: tuple[Cause, ...]) -> list[dict[str, object]]:
                 "equations": effect.equations if effect else "",
                 "source": effect.source if effect else "",
                 "parameters": [
-                    (name(key), number(e.value), interval(e.ci95), "" if e.unit == "1" else e.unit)
-                    for key, e in cause.parameters.items()
+                    (name(key), number(e.value), interval(e.ci95), _unit(e.unit)) for key, e in cause.parameters.items()
                 ],
             }
         )
@@ -160,11 +159,15 @@ def tested_rows(diagnosis: Diagnosis) -> list[dict[str, object]]:
             "testable": test.testable,
             "limit": "-"
             if test.detection_limit is None
-            else f"{name(test.parameter)} {number(test.detection_limit, 2)} {test.unit}".strip(),
+            else f"{name(test.parameter)} {number(test.detection_limit, 2)} {_unit(test.unit)}".strip(),
             "reason": test.reason,
         }
         for test in diagnosis.effects_tested
     ]
+
+
+def _unit(unit: str) -> str:
+    return "" if unit == "1" else unit
 
 
 def plain_rows(mapping: Mapping[str, object]) -> list[tuple[str, str]]:

@@ -86,6 +86,8 @@ def planes(series: Series) -> Figure:
 @drawn("How often the residual exceeds a size, and its spectrum, before and after")
 def residual_shape(series: Series, floor_percent: float) -> Figure:
     """Share of time above a size, and spectrum of the residual before and after, on held-out rows, with the floor."""
+    from matplotlib.ticker import LogLocator
+
     figure = new_figure(10.6, 2.9)
     left, right = figure.subplots(1, 2)
     rows = series.heldout if series.heldout.any() else np.ones_like(series.heldout)
@@ -105,6 +107,9 @@ def residual_shape(series: Series, floor_percent: float) -> Figure:
         left.fill_between(size, share, color=FLOOR, alpha=0.7, linewidth=0, label="noise floor")
         left.set_xlim(left=0.1 * floor_percent)
     left.set_xscale("log")
+    left.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0)))
+    left.xaxis.set_major_formatter(lambda value, _: f"{value:.2g}")
+    left.minorticks_off()
     tidy(left, "size of the residual [% of travel]", "time above it [%]")
     tidy(right, "frequency [Hz]", "power density [%²/Hz]")
     right.minorticks_off()
