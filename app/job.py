@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from click import echo
+
 from app.session import Session
 
 if TYPE_CHECKING:
@@ -16,6 +18,9 @@ if TYPE_CHECKING:
     from control.plan import Plan
     from logs.stream import RunView
     from logs.writer import RunWriter
+
+
+WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,13 +54,17 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     from control.supervise import supervised
     from hal.signals import stop_signals
     from logs.writer import RunWriter
+    from sim_device.sealed import write as write_commitment
 
     info = session.bench.info
+    _check_watchdogs(session, job.plan.period_s)
     columns = columns_of(info, closed_loop=job.closed_loop, aux_units=session.aux_units)
     start = _start(session, job)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
         record = stack.enter_context(RunWriter.create(out, start, columns))
+        if session.sealed is not None:
+            write_commitment(record.folder, session.sealed)
         view = _open_view(record, columns) if live else None
         if view is not None:
             stack.callback(view.close)
@@ -66,8 +75,28 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
         sinks = (record,) if view is None else (record, view)
         loop = Loop(session.bench, session.clock, sinks, hooks, aux=tuple(session.aux_units))
         begun = session.command_in_force
-        outcome = supervised(loop, record, lambda: loop.run(job.plan, job.make_drive(begun), begun))
+        try:
+            outcome = supervised(loop, record, lambda: loop.run(job.plan, job.make_drive(begun), begun))
+        except BaseException:
+            display.close()
+            echo(f"stopped after {loop.rows} samples; record: {record.folder}{_hint(job, record.folder)}", err=True)
+            raise
     return Finished(record.folder, outcome)
+
+
+def _hint(job: Job, folder: Path) -> str:
+    return f"\ngo on with: lostmotion sweep --resume {folder}" if job.kind == "sweep" else ""
+
+
+def _check_watchdogs(session: Session, period_s: float) -> None:
+    from hal.errors import BadInput
+
+    for name, device in session.profile.devices.items():
+        if device.watchdog is not None and period_s > WATCHDOG_SHARE * device.watchdog.timeout_s:
+            raise BadInput(
+                f"a period of {period_s:g} s is too long: the watchdog of device '{name}' vents the valve after "
+                f"{device.watchdog.timeout_s:g} s of silence; at most {WATCHDOG_SHARE:g} of that is safe"
+            )
 
 
 def _start(session: Session, job: Job) -> dict[str, object]:
@@ -86,8 +115,6 @@ def _start(session: Session, job: Job) -> dict[str, object]:
 
 
 def _open_view(record: RunWriter, columns: Mapping[str, str]) -> RunView:
-    from click import echo
-
     from logs.stream import RunView
 
     view = RunView.open(record.start, columns)

@@ -83,9 +83,9 @@ def diagnose(
     where = whereabouts(case, result, settings.seed)
     ep_share = where.stage["ep"].value if where.stage else 0.0
     judgement = pronounce(result, sensing, ep_share, settings.weights)
-    final = _final_plant(case, result, judgement, retuned)
+    final = _final_plant(case, result, judgement, retuned, sensing)
     progress("held-out gap", 0.0)
-    parts = heldout_parts(case, result, judgement, retuned, progress)
+    parts = heldout_parts(case, result, judgement, retuned, sensing, progress)
     diagnosis = _assembled(case, result, judgement, where, parts, settings, timing_notes, sensing)
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
@@ -100,11 +100,14 @@ def _retuned(case: Case) -> Fit:
     return fit(channel, space, starts_of(space), rounds=20)
 
 
-def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit) -> Plant:
+def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, sensing: Sensing) -> Plant:
     """The updated model: the design for no gap, re-tuned when unexplained, with the causes otherwise."""
     if judgement.verdict == "no_gap":
         return case.base
-    return retuned.plant if judgement.verdict == "unexplained" else result.plant()
+    if judgement.verdict == "unexplained":
+        return retuned.plant
+    found = result.plant()
+    return Plant(found.design, (*found.inserted, *sensing.inserted()))
 
 
 def _assembled(

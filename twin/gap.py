@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
 from logs.recording import FloatArray
 from twin.case import Case
 from twin.choose.decide import Decision
@@ -12,6 +14,7 @@ from twin.closure import rms
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit
 from twin.heldout import predict_heldout
+from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement
 
@@ -35,7 +38,9 @@ class GapParts:
     alone: dict[str, float]
 
 
-def heldout_parts(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, progress: Progress) -> GapParts:
+def heldout_parts(
+    case: Case, result: StageResult, judgement: Judgement, retuned: Fit, sensing: Sensing, progress: Progress
+) -> GapParts:
     """Refits everything on the rows that are not held out and predicts those that are."""
     chain = chain_channel(case.trials, case.sigma_y)
     before = predict_heldout(case, case.base, [], [])
@@ -46,7 +51,9 @@ def heldout_parts(case: Case, result: StageResult, judgement: Judgement, retuned
     elif judgement.verdict == "unexplained" or not named:
         after = again
     else:
-        after = _predicted(case, {d: d.accepted for d in named})
+        after = _predicted(case, {d: d.accepted for d in named}, sensing)
+    if "sensor_dropouts" in sensing.accepted and judgement.verdict != "unexplained":
+        before, again, after = _with_false_readings(case, retuned, sensing, before, again, after)
     progress("held-out gap", 0.5)
     percent = 100.0 / case.travel
     without = {name: percent * rms(_left_out(case, named, name)) for d in named for name in d.names}
@@ -55,9 +62,23 @@ def heldout_parts(case: Case, result: StageResult, judgement: Judgement, retuned
     return GapParts(before, again, after, without, alone)
 
 
-def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
+def _predicted(case: Case, fits: dict[Decision, Fit], sensing: Sensing | None = None) -> FloatArray:
     channels = [d.findings.channel for d in fits]
-    return predict_heldout(case, case.base, list(fits.values()), channels)
+    extra = sensing.inserted() if sensing else ()
+    return predict_heldout(case, case.base, list(fits.values()), channels, extra)
+
+
+def _with_false_readings(
+    case: Case, retuned: Fit, sensing: Sensing, *errors: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """The errors with the false readings among the rows: they are part of the gap before, and accounted for after."""
+    chain = chain_channel(case.trials, case.sigma_y)
+    false = np.concatenate(sensing.bad_rows) & np.isfinite(chain.measured)
+    before, again, after = (error.copy() for error in errors)
+    before[false] = (chain.measured - chain.prediction(case.base))[false]
+    again[false] = (chain.measured - chain.prediction(retuned.plant))[false]
+    after[false] = 0.0
+    return before, again, after
 
 
 def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:

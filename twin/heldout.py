@@ -16,7 +16,7 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit
-from twin.plant import Plant
+from twin.plant import Inserted, Plant
 from twin.stages import combined
 
 FOLDS = 2
@@ -59,12 +59,18 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
     ]
 
 
-def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:
-    """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count."""
+def predict_heldout(
+    case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel], extra: Sequence[Inserted] = ()
+) -> FloatArray:
+    """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count.
+
+    `extra` are effects that no fit knows (the resolution of the reading).
+    """
     chain = chain_channel(case.trials, case.sigma_y)
     error = np.full(chain.measured.size, np.nan)
     for weights in fold_weights(case):
         plant = combined(base, refitted(fits, channels, weights)) if fits else base
+        plant = Plant(plant.design, (*plant.inserted, *extra))
         held = (weights == 0.0) & chain.use
         error[held] = (chain.measured - chain.prediction(plant))[held]
     return error

@@ -12,10 +12,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import Recording
+from twin.catalog import effect
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence
 from twin.events.scan import Events, scan_events
 from twin.noise.model import NoiseModel
+from twin.plant import Inserted
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
@@ -30,6 +32,12 @@ class Sensing:
     events: tuple[Events, ...]
     accepted: dict[str, dict[str, Estimate]]
     step: float
+
+    def inserted(self) -> tuple[Inserted, ...]:
+        """What of the accepted events a model can repeat: the resolution of the reading."""
+        if "sensor_quantization" not in self.accepted:
+            return ()
+        return (Inserted("sensor_quantization", effect("sensor_quantization").forms[0], (self.step,)),)
 
     @property
     def bad_rows(self) -> list[np.ndarray]:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.session import bench_options, open_bench, record_options
+from app.session import bench_options, open_bench, record_options, sealed_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 @click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a setting of the controller.")
 @click.option("--period", "period_s", type=float, default=0.1, show_default=True, metavar="S", help="Tick [s].")
 @bench_options
+@sealed_option
 @record_options
 @click.option("--list", "list_them", is_flag=True, help="List the controllers and their settings.")
 @click.option("--dry-run", is_flag=True, help="Show duration and targets; touch nothing.")
@@ -49,6 +50,7 @@ def command(
     seed: int,
     real_time: bool,
     effects: tuple[str, ...],
+    sealed: str | None,
     out: Path | None,
     note: str,
     operator: str,
@@ -78,7 +80,9 @@ def command(
     if dry_run:
         _preview(plan, controller, as_json)
         return
-    with open_bench(port, found, physics=physics, seed=seed, real_time=real_time, effects=effects) as session:
+    with open_bench(
+        port, found, physics=physics, seed=seed, real_time=real_time, effects=effects, sealed=sealed
+    ) as session:
         job = _job(session, plan, controller, settings, model, {"note": note, "operator": operator, "seed": seed})
         _announce(session, plan, controller, as_json)
         done = perform(session, job, out=out, live=live, title=controller)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.session import bench_options, open_bench, record_options
+from app.session import bench_options, open_bench, record_options, sealed_option
 
 if TYPE_CHECKING:
     from app.job import Job
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 @click.command(name="sweep", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
 @click.argument("what", metavar="KIND|FILE.toml", required=False)
 @bench_options
+@sealed_option
 @record_options
 @click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a number of the experiment.")
 @click.option("--period", "period_s", type=float, metavar="S", help="Time between two samples [s].")
@@ -39,6 +40,7 @@ def command(
     seed: int,
     real_time: bool,
     effects: tuple[str, ...],
+    sealed: str | None,
     out: Path | None,
     note: str,
     operator: str,
@@ -66,7 +68,9 @@ def command(
         return
     from app.job import perform
 
-    with open_bench(port, found, physics=physics, seed=seed, real_time=real_time, effects=effects) as session:
+    with open_bench(
+        port, found, physics=physics, seed=seed, real_time=real_time, effects=effects, sealed=sealed
+    ) as session:
         job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
         _announce(session, experiment, job, as_json)
         done = perform(session, job, out=out, live=live, title=experiment.kind)
