@@ -199,16 +199,8 @@ def _cause(cause: Cause) -> dict[str, object]:
 
 
 def _where(where: Where) -> dict[str, object]:
-    return {
-        "stage": _group(where.stage),
-        "attributed": _group(where.attributed),
-        "direction": _group(where.direction),
-        "regime": _group(where.regime),
-        "position": _bins(where.position),
-        "pressure": _bins(where.pressure),
-        "time": _bins(where.time),
-        "frequency": _bins(where.frequency),
-    }
+    groups = {key: _group(getattr(where, key)) for key in ("stage", "attributed", "direction", "regime")}
+    return groups | {key: _bins(getattr(where, key)) for key in ("position", "pressure", "time", "frequency")}
 
 
 def _group(group: Mapping[str, Share] | None) -> dict[str, object] | None:
