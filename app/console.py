@@ -50,6 +50,10 @@ class RunDisplay:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Takes the bar away."""
         self._bar.stop()
 
     def show(self, where: Where) -> None:

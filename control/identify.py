@@ -7,7 +7,6 @@ for comparison, the two curves from steady dwells and the time constant by the 6
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -15,17 +14,15 @@ from control.characterize import Settling, characterize
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
-from control.identify_model import lagged, make_grid
-from control.identify_pressure import PressureStage, fit_pressure
-from control.identify_readings import false_readings, fast_noise
+from control.identify_pressure import PressureStage
+from control.identify_readings import fast_noise
 from control.identify_result import Estimate, Identified, quality_of
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
+from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
 from control.identify_valve import Freedom, Track, ValveFit, fit_valve, refit_separate
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording
-
-FEWEST_ROWS = 30
 
 
 def identify(recordings: Sequence[Recording], defaults: DesignModel | None = None) -> Identified:
@@ -38,14 +35,14 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
     base = defaults or default_design(unit_p, unit_x)
     notes: list[str] = []
-    recordings = [_cleaned(each, notes) for each in recordings]
+    recordings = [cleaned(each, notes) for each in recordings]
     tracks: list[Track] = []
     stages: list[PressureStage] = []
     for recording in recordings:
-        stage, fine_s, fine = _pressure(recording, base.ep_tau_s, notes)
+        stage, fine_s, fine = drive_of(recording, base.ep_tau_s, notes)
         if stage is not None:
             stages.append(stage)
-        tracks += _tracks(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
+        tracks += tracks_of(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
     if not tracks:
         raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
     fit, freedom = fit_valve(tracks)
@@ -54,6 +51,7 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     facts = Facts(base, unit_p, unit_x, _ep_tau(stages), fit, freedom, tracks)
     spread, freedom_rows = spread_of(tracks, fit, freedom)
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
+    _check_found(estimates, recordings)
     estimates += _slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design)
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
@@ -105,66 +103,6 @@ def _check(recordings: Sequence[Recording]) -> None:
         raise BadInput(f"{first.name}: the position never leaves its noise; sweep over both curves (about 6 to 12 psi)")
 
 
-def _cleaned(recording: Recording, notes: list[str]) -> Recording:
-    """The recording with plainly false readings made missing, and said."""
-    values = {"position": recording.position}
-    if recording.pressure is not None:
-        values["pressure"] = recording.pressure
-    for name, signal in values.items():
-        false = false_readings(signal)
-        if false.any():
-            notes.append(f"{recording.name}: {int(false.sum())} false readings of the {name} are left out")
-            values[name] = np.where(false, np.nan, signal)
-    return replace(recording, **values)  # type: ignore[arg-type]
-
-
-def _pressure(
-    recording: Recording, ep_tau_s: float, notes: list[str]
-) -> tuple[PressureStage | None, FloatArray, FloatArray]:
-    """The stage (None without pressure), the fine times and the pressure that drives the play there."""
-    grid = make_grid(recording.time_s)
-    if recording.pressure is None:
-        notes.append(
-            f"{recording.name}: no measured pressure: the E/P and actuator stages cannot be separated; "
-            f"the E/P lag is kept at {ep_tau_s:g} s, and tau carries its error"
-        )
-        return None, grid.fine_time_s, lagged(grid, recording.command, ep_tau_s, float(recording.command[0]))
-    stage = fit_pressure(grid, recording.command, recording.pressure, ep_tau_s)
-    if recording.command_timing == "unknown":
-        later = np.concatenate((recording.command[:1], recording.command[:-1]))
-        shifted = fit_pressure(grid, later, recording.pressure, ep_tau_s)
-        if shifted.rms < stage.rms:
-            stage = shifted
-            notes.append(f"{recording.name}: the commands fit the pressure better when they count from their row on")
-    if stage.tau_s is None:
-        notes.append(f"{recording.name}: the pressure does not show the E/P lag; it is kept at {ep_tau_s:g} s")
-    if not stage.is_calibrated:
-        notes.append(
-            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}: "
-            "the E/P transducer and its transmitter disagree; the design model has no place for that"
-        )
-    return stage, grid.fine_time_s, stage.fine
-
-
-def _tracks(
-    recording: Recording, fine_s: FloatArray, fine: FloatArray, doubts: Sequence[FloatArray], notes: list[str]
-) -> list[Track]:
-    """The record cut at its gaps: what the valve did meanwhile nobody knows."""
-    breaks = [] if recording.gap_before is None else np.flatnonzero(recording.gap_before).tolist()
-    tracks = []
-    for start, stop in zip([0, *breaks], [*breaks, recording.n], strict=True):
-        position = recording.position[start:stop]
-        good = np.isfinite(position)
-        if good.sum() < FEWEST_ROWS:
-            notes.append(f"{recording.name}: a stretch of {stop - start} rows between gaps is too short and left out")
-            continue
-        grid = make_grid(recording.time_s[start:stop])
-        pressure = np.interp(grid.fine_time_s, fine_s, fine)
-        doubt = tuple(np.interp(grid.fine_time_s, recording.time_s, each) for each in doubts)
-        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good, doubt))
-    return tracks
-
-
 def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
     """The E/P lag over all recordings, weighted by what each knows of it."""
     known = [stage.tau_s for stage in stages if stage.tau_s is not None]
@@ -189,6 +127,13 @@ def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequen
     raise JobFailed(
         f"{names}: the position does not follow the pressure in any way that the model knows; check the columns"
     )
+
+
+def _check_found(estimates: Sequence[Estimate], recordings: Sequence[Recording]) -> None:
+    known = {each.name for each in estimates if each.interval is not None}
+    if "compliance" not in known and not {"a1", "a2"} <= known:
+        names = ", ".join(recording.name for recording in recordings)
+        raise JobFailed(f"{names}: the curves do not show; sweep through both, such as `lostmotion sweep staircase`")
 
 
 def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str, design: DesignModel) -> list[Estimate]:

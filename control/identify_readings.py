@@ -12,9 +12,9 @@ FALSE_REACH = 0.02  # of the range of the middle 98 %: a false reading is at lea
 
 
 def fast_noise(values: FloatArray) -> float:
-    """Standard deviation of what changes from reading to reading, which outliers cannot pull. NaN is left out."""
-    steps = np.diff(values[np.isfinite(values)])
-    return float(1.4826 * np.median(np.abs(steps)) / np.sqrt(2.0)) if steps.size else 0.0
+    """Standard deviation of what changes from reading to reading, steady motion and outliers aside. NaN is left out."""
+    bends = np.diff(values[np.isfinite(values)], n=2)
+    return float(1.4826 * np.median(np.abs(bends)) / np.sqrt(6.0)) if bends.size else 0.0
 
 
 def false_readings(values: FloatArray) -> npt.NDArray[np.bool_]:
@@ -27,7 +27,7 @@ def false_readings(values: FloatArray) -> npt.NDArray[np.bool_]:
     inside = values[finite]
     if inside.size < 20:
         return false
-    padded = np.pad(inside, 2, mode="edge")
+    padded = np.pad(inside, 2, mode="reflect")
     around = np.lib.stride_tricks.sliding_window_view(padded, 5)
     middle = np.median(around, axis=1)
     low, high = np.percentile(inside, (1.0, 99.0))

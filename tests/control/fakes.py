@@ -70,8 +70,9 @@ class ToyBench:
         for _ in range(steps):
             h = (now_s - last_s) / steps
             self.p = self.command + (self.p - self.command) * math.exp(-h / v.ep_tau)
+            before = self.w
             self.w = min(max(v.k1 * (self.p - v.a1), min(v.k2 * (self.p - v.a2), self.w), 0.0), v.travel)
-            moved = (self.w - self.x) * (1.0 - math.exp(-h / v.tau))
+            moved = (0.5 * (before + self.w) - self.x) * (1.0 - math.exp(-h / v.tau))
             self.x = min(max(self.x + min(max(moved, -v.rate * h), v.rate * h), 0.0), v.travel)
         self.time_s = now_s
 

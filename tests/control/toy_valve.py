@@ -37,8 +37,9 @@ def respond(toy: Toy, time_s: FloatArray, command: FloatArray, step_s: float = 0
         h, u = gap / count, float(command[i])
         for _ in range(count):
             p = u + (p - u) * math.exp(-h / toy.ep_tau)
+            before = w
             w = min(max(toy.k1 * (p - toy.a1), min(toy.k2 * (p - toy.a2), w), 0.0), toy.travel)
-            moved = (w - x) * (1.0 - math.exp(-h / toy.tau))
+            moved = (0.5 * (before + w) - x) * (1.0 - math.exp(-h / toy.tau))
             x = min(max(x + min(max(moved, -toy.rate * h), toy.rate * h), 0.0), toy.travel)
         pressure.append(p)
         position.append(x)

@@ -1,0 +1,76 @@
+"""From a recording to what can be fitted: false readings out, a pressure that may drive the play, cut at the gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from control.identify_model import lagged, make_grid
+from control.identify_pressure import PressureStage, fit_pressure
+from control.identify_readings import false_readings
+from control.identify_valve import Track
+from logs.recording import FloatArray, Recording
+
+FEWEST_ROWS = 30
+
+
+def cleaned(recording: Recording, notes: list[str]) -> Recording:
+    """The recording with plainly false readings made missing, and said."""
+    values = {"position": recording.position}
+    if recording.pressure is not None:
+        values["pressure"] = recording.pressure
+    for name, signal in values.items():
+        false = false_readings(signal)
+        if false.any():
+            notes.append(f"{recording.name}: {int(false.sum())} false readings of the {name} are left out")
+            values[name] = np.where(false, np.nan, signal)
+    return replace(recording, **values)  # type: ignore[arg-type]
+
+
+def drive_of(
+    recording: Recording, ep_tau_s: float, notes: list[str]
+) -> tuple[PressureStage | None, FloatArray, FloatArray]:
+    """The stage (None without pressure), the fine times and the pressure that drives the play there."""
+    grid = make_grid(recording.time_s)
+    if recording.pressure is None:
+        notes.append(
+            f"{recording.name}: no measured pressure: the E/P and actuator stages cannot be separated; "
+            f"the E/P lag is kept at {ep_tau_s:g} s, and tau carries its error"
+        )
+        return None, grid.fine_time_s, lagged(grid, recording.command, ep_tau_s, float(recording.command[0]))
+    stage = fit_pressure(grid, recording.command, recording.pressure, ep_tau_s)
+    if recording.command_timing == "unknown":
+        later = np.concatenate((recording.command[:1], recording.command[:-1]))
+        shifted = fit_pressure(grid, later, recording.pressure, ep_tau_s)
+        if shifted.rms < stage.rms:
+            stage = shifted
+            notes.append(f"{recording.name}: the commands fit the pressure better when they count from their row on")
+    if stage.tau_s is None:
+        notes.append(f"{recording.name}: the pressure does not show the E/P lag; it is kept at {ep_tau_s:g} s")
+    if not stage.is_calibrated:
+        notes.append(
+            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}: "
+            "the E/P transducer and its transmitter disagree; the design model has no place for that"
+        )
+    return stage, grid.fine_time_s, stage.fine
+
+
+def tracks_of(
+    recording: Recording, fine_s: FloatArray, fine: FloatArray, doubts: Sequence[FloatArray], notes: list[str]
+) -> list[Track]:
+    """The record cut at its gaps: what the valve did meanwhile nobody knows."""
+    breaks = [] if recording.gap_before is None else np.flatnonzero(recording.gap_before).tolist()
+    tracks = []
+    for start, stop in zip([0, *breaks], [*breaks, recording.n], strict=True):
+        position = recording.position[start:stop]
+        good = np.isfinite(position)
+        if good.sum() < FEWEST_ROWS:
+            notes.append(f"{recording.name}: a stretch of {stop - start} rows between gaps is too short and left out")
+            continue
+        grid = make_grid(recording.time_s[start:stop])
+        pressure = np.interp(grid.fine_time_s, fine_s, fine)
+        doubt = tuple(np.interp(grid.fine_time_s, recording.time_s, each) for each in doubts)
+        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good, doubt))
+    return tracks

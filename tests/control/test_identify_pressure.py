@@ -1,0 +1,72 @@
+"""The E/P stage."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from control.identify_model import lagged, make_grid
+from control.identify_pressure import fit_pressure, moving_average
+from tests.control.toy_valve import random_steps
+
+TIME_S = np.arange(0.0, 200.0, 0.1)
+COMMAND = random_steps(200.0, 0.1)
+GRID = make_grid(TIME_S)
+
+
+def readings(tau_s: float, noise: float = 0.004, seed: int = 0) -> np.ndarray:
+    clean = lagged(GRID, COMMAND, tau_s, 4.0)[GRID.first]
+    return np.asarray(clean + noise * np.random.default_rng(seed).standard_normal(TIME_S.size))
+
+
+@pytest.mark.parametrize("tau_s", [0.05, 0.3, 2.0])
+def test_the_lag_is_found_with_an_interval(tau_s: float) -> None:
+    stage = fit_pressure(GRID, COMMAND, readings(tau_s), 0.3)
+    assert stage.tau_s is not None
+    assert stage.tau_s.value == pytest.approx(tau_s, rel=0.01)
+    assert stage.tau_s.half_width < 0.01 * tau_s
+
+
+def test_gain_and_zero_do_not_spoil_it() -> None:
+    stage = fit_pressure(GRID, COMMAND, 1.04 * readings(0.3) - 0.2, 0.3)
+    assert stage.tau_s is not None
+    assert stage.tau_s.value == pytest.approx(0.3, rel=0.01)
+    assert (stage.gain, stage.zero) == pytest.approx((1.04, -0.2), abs=0.005)
+    assert not stage.is_calibrated
+
+
+def test_false_and_missing_readings_do_not_pull() -> None:
+    pressure = readings(0.3)
+    pressure[::41] = 20.0
+    pressure[::17] = np.nan
+    stage = fit_pressure(GRID, COMMAND, pressure, 0.3)
+    assert stage.tau_s is not None
+    assert stage.tau_s.value == pytest.approx(0.3, rel=0.02)
+
+
+def test_the_smoothed_pressure_is_closer_to_the_truth_than_the_readings() -> None:
+    stage = fit_pressure(GRID, COMMAND, readings(0.3), 0.3)
+    truth = lagged(GRID, COMMAND, 0.3, 4.0)
+    assert np.std(stage.fine - truth) < 0.0008
+    assert np.abs(stage.fine - truth).max() < 0.005
+
+
+def test_a_slow_disturbance_that_is_really_there_is_kept() -> None:
+    wave = 0.1 * np.sin(TIME_S / 15.0)
+    stage = fit_pressure(GRID, COMMAND, readings(0.3) + wave, 0.3)
+    truth = lagged(GRID, COMMAND, 0.3, 4.0)[GRID.first] + wave
+    assert np.std(stage.fine[GRID.first] - truth) < 0.01
+
+
+def test_a_ramp_does_not_tell_the_lag_and_the_default_is_kept() -> None:
+    ramp = np.linspace(7.0, 7.05, TIME_S.size)
+    pressure = ramp + 0.004 * np.random.default_rng(0).standard_normal(TIME_S.size)
+    assert fit_pressure(GRID, ramp, pressure, 0.3).tau_s is None
+
+
+def test_the_moving_average_has_no_phase_and_steps_over_holes() -> None:
+    values = np.sin(TIME_S / 10.0)
+    good = np.ones(TIME_S.size, dtype=bool)
+    good[500:505] = False
+    smooth = moving_average(TIME_S, np.where(good, values, 99.0), good, 1.0)
+    assert np.abs(smooth - values)[20:-20].max() < 0.01

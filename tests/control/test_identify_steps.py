@@ -1,0 +1,36 @@
+"""The 63 % rule."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from control.characterize import Settling
+from control.identify_steps import time_constant_63, without_lag
+from tests.control.toy_valve import Toy, record
+
+
+def test_steps_on_the_curve_give_the_time_constant() -> None:
+    levels = [4.0, *np.arange(8.7, 11.5, 0.25), 11.5]
+    command = np.repeat(levels, 250)
+    found = time_constant_63([record(Toy(), np.arange(command.size) * 0.1, command)], Settling(2.7, 0.3, 0.12), 0.5625)
+    assert found.tau_s is not None
+    assert found.tau_s.value == pytest.approx(2.7, rel=0.03)
+    assert np.median(found.raw_s) == pytest.approx(3.0, abs=0.1)
+
+
+def test_too_few_steps_give_none() -> None:
+    command = np.repeat([4.0, 9.5], 250)
+    found = time_constant_63([record(Toy(), np.arange(command.size) * 0.1, command)], Settling(2.7, 0.3, 0.12), 0.5625)
+    assert found.tau_s is None
+
+
+@pytest.mark.parametrize(("tau_s", "ep_tau_s"), [(2.7, 0.3), (5.0, 0.0), (1.0, 0.2)])
+def test_the_converters_share_is_taken_out(tau_s: float, ep_tau_s: float) -> None:
+    time_s = np.arange(0.0, 30.0, 1e-3)
+    slow, fast = np.exp(-time_s / tau_s), np.exp(-time_s / ep_tau_s) if ep_tau_s else 0.0 * time_s
+    response = 1.0 - (tau_s * slow - ep_tau_s * fast) / (tau_s - ep_tau_s)
+    crossed_s = float(time_s[np.argmax(response > 1.0 - math.exp(-1.0))])
+    assert without_lag(crossed_s, ep_tau_s) == pytest.approx(tau_s, abs=3e-3)
