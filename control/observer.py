@@ -14,13 +14,15 @@ from control.dead_time import DeadTime, no_dead_time
 from control.design import DesignModel
 
 MIDDLE_PSI = 9.0
+TURN_PSI = 0.15  # smaller changes of command do not turn the converter's hysteresis round
 
 
 @dataclass(frozen=True, slots=True)
 class Inside:
     """The estimate at one instant. Pressures in psi, positions in inches; `a1`, `a2` are the edges as learned so far.
 
-    A command u settles at u + `bias` + `slope` (u - 9 psi): the converter's zero and gain error. `seen_psi` is the last
+    A command u settles at u + `bias` + `slope` (u - 9 psi) + `kink` `way`: the converter's zero error, gain error and
+    hysteresis; `way` is the direction of the last change of command (+1, -1; 0 at first). `seen_psi` is the last
     pressure reading.
     """
 
@@ -33,14 +35,30 @@ class Inside:
     line: DeadTime
     bias: float = 0.0
     slope: float = 0.0
+    kink: float = 0.0
+    way: int = 0
+    turned_psi: float = 0.0
 
     def settles(self, command_psi: float) -> float:
         """The pressure at which a command settles [psi]."""
-        return command_psi + self.bias + self.slope * (command_psi - MIDDLE_PSI)
+        return command_psi + self.bias + self.slope * (command_psi - MIDDLE_PSI) + self.kink * self._way(command_psi)
 
     def command_for(self, pressure_psi: float) -> float:
         """The command that settles at this pressure [psi]."""
-        return (pressure_psi - self.bias + self.slope * MIDDLE_PSI) / (1.0 + self.slope)
+        away_psi = pressure_psi - self.p
+        way = self.way if abs(away_psi) < TURN_PSI else (1 if away_psi > 0.0 else -1)
+        return (pressure_psi - self.bias - self.kink * way + self.slope * MIDDLE_PSI) / (1.0 + self.slope)
+
+    def turned(self, command_psi: float) -> Inside:
+        """With the direction of this command; `turned_psi` is the furthest command in that direction."""
+        way = self._way(command_psi)
+        furthest = max if way > 0 else min
+        kept_psi = furthest(self.turned_psi, command_psi) if way == self.way and way else command_psi
+        return replace(self, way=way, turned_psi=kept_psi)
+
+    def _way(self, command_psi: float) -> int:
+        away_psi = command_psi - self.turned_psi
+        return self.way if abs(away_psi) < TURN_PSI else (1 if away_psi > 0.0 else -1)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,8 +76,9 @@ class Observer:
         return self._consistent(self._stopped(self._first(seen, w)))
 
     def _first(self, seen: Seen, w: float) -> Inside:
-        line = no_dead_time(seen.commanded_psi)
-        return Inside(seen.pressure_psi, w, seen.position_in, self.design.a1, self.design.a2, seen.pressure_psi, line)
+        d, line = self.design, no_dead_time(seen.commanded_psi)
+        p, command_psi = seen.pressure_psi, seen.commanded_psi
+        return Inside(p, w, seen.position_in, d.a1, d.a2, p, line, turned_psi=command_psi)
 
     def track(self, inside: Inside, seen: Seen, dt_s: float, omega: float) -> tuple[Inside, Inside]:
         """The estimate for the next tick, and the one for the instant at which the next command begins to act.
@@ -105,8 +124,10 @@ class Observer:
         if abs(inside.settles(command_psi) - inside.p) > 0.7:
             return moved
         lever = (command_psi - MIDDLE_PSI) / 2.0
-        step = self.bias_gain * pressure_error / share / (1.0 + lever**2)
-        return replace(moved, bias=inside.bias + step, slope=min(max(inside.slope + step * lever / 2.0, -0.1), 0.1))
+        way = inside.way
+        step = self.bias_gain * pressure_error / share / (1.0 + lever**2 + way**2)
+        slope = min(max(inside.slope + step * lever / 2.0, -0.1), 0.1)
+        return replace(moved, bias=inside.bias + step, slope=slope, kink=inside.kink + step * way)
 
     def contact(self, inside: Inside) -> tuple[bool, bool]:
         """Whether the play is in contact on its closing and on its opening side."""
@@ -125,7 +146,7 @@ class Observer:
             w_next = min(max(k * (p - inside.a1), min(k * (p - inside.a2), w), 0.0), d.travel)
             x = follow(x, 0.5 * (w + w_next), d.tau_s, d.rate_limit, part_s)
             w = w_next
-        return replace(inside, p=p, w=w, x=x)
+        return replace(inside.turned(command_psi), p=p, w=w, x=x)
 
     def _stopped(self, inside: Inside) -> Inside:
         """The play output on an end stop, where it is next to it and the pressure does not hold it off."""

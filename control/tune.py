@@ -64,7 +64,7 @@ def tune(design: DesignModel, tick_s: float, dead_time_s: float = 0.0) -> list[T
         ),
         Tuned(
             "overdrive",
-            {"approach_s": _round(2.0 * design.ep_tau_s + dead_time_s), "again_in": _round(0.021 * design.travel)},
+            {"approach_s": _round(1.7 * design.ep_tau_s + dead_time_s), "again_in": _round(0.009 * design.travel)},
             None,
             "the drive lasts at least as long as the converter needs to brake; small misses are not worth one",
         ),

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from app.gallery.figure import BLUE, GREY, ORANGE, RED, Entry, Number
+from app.gallery.figure import BLUE, GREY, ORANGE, Entry, Number
 from app.physics_bench import open_virtual
 from control.controller import make_controller
 from control.design import DesignModel
-from control.if_then import threshold_line_psi
 from control.trial import Trace, run_trial
 from logs.recording import FloatArray
 
@@ -71,8 +70,9 @@ def figure_3_2() -> Entry:
         "Very large steady errors, fluctuations of more than 10 % of travel; changing Kp has little effect.",
         "The thesis does not give the unit of Kp; in psi/in both readings of figure 3-1 are built. The positional one "
         "(a fixed bias plus Kp e) moves the pressure by 1.7 psi over the whole range of errors, less than the "
-        "deadband: very large errors, no fluctuation. The incremental one adds Kp e to the measured pressure, so it integrates, "
-        "and with the play it hunts: the picture, and the thesis's words. Item 2-8 predicts that oscillation.",
+        "deadband: very large errors, no fluctuation. The incremental one adds Kp e to the measured pressure, so it "
+        "integrates, and with the play it hunts: the picture, and the thesis's words. Item 2-8 predicts that "
+        "oscillation.",
         (
             Number("fluctuation, incremental", None, _swing(tails(incremental)), "% of travel", 0),
             Number("fluctuation with Kp = 4", None, _swing(tails(slow)), "% of travel", 0),
@@ -113,52 +113,6 @@ def _first(trace: Trace, row: int) -> int:
     return int(np.argmax(moved)) if moved.any() else moved.size
 
 
-def figure_3_5() -> Entry:
-    """The two pressure steps, as a test on the valve."""
-    start_in, end_in = 0.20, 0.30
-    small_psi = (end_in - start_in) / DESIGN.compliance
-    large_psi = small_psi + DESIGN.deadband
-    high = DESIGN.a1 + start_in / DESIGN.compliance
-    low = DESIGN.a2 + start_in / DESIGN.compliance
-    moves = {
-        "small step from the high pressure": _move((5.0, high), small_psi),
-        "small step from the low pressure": _move((14.0, low), small_psi),
-        "large step from the low pressure": _move((14.0, low), large_psi),
-    }
-
-    def draw(canvas: Canvas) -> None:
-        axes = canvas.subplots()
-        x = np.array([0.0, DESIGN.travel])
-        for edge, colour in ((DESIGN.a1, BLUE), (DESIGN.a2, RED)):
-            axes.plot(edge + x / DESIGN.compliance, x, color=colour, lw=1.0)
-        for begin, step, y, name in ((high, small_psi, start_in, "1"), (low, large_psi, start_in - 0.02, "2")):
-            axes.annotate("", (begin + step, y), (begin, y), arrowprops={"arrowstyle": "->", "color": GREY})
-            axes.text(begin + 0.5 * step, y - 0.03, f"step {name}: {step:.2f} psi", ha="center", fontsize=8)
-        axes.plot([high, low], [start_in] * 2, "o", color=GREY, ms=5)
-        axes.plot([high + small_psi], [end_in], "s", color=GREY, ms=5)
-        axes.set(xlabel="pressure [psi]", ylabel="position [in]")
-
-    return Entry(
-        "3-5",
-        "Figure 3-5: the two pressure steps, as a test",
-        "The same move needs a small step from the high pressure and one larger by the deadband from the low one.",
-        "From 0.20 in to 0.30 in; the steps are sent to the virtual valve.",
-        (
-            Number("small step (1)", None, small_psi, "psi", 2),
-            Number("large step (2)", None, large_psi, "psi", 2),
-            *(Number(f"{name} moves", None, moved, "in", 3) for name, moved in moves.items()),
-        ),
-        draw,
-    )
-
-
-def _move(before: tuple[float, float], step_psi: float) -> float:
-    from app.gallery.record import levels, play
-
-    run = play(levels([*before, before[1] + step_psi], 40.0))
-    return float(run.position[-100:].mean() - run.position[700:800].mean())
-
-
 def figure_3_7() -> Entry:
     """The constant threshold bounces."""
     trace = trial("if_then_constant")
@@ -186,37 +140,9 @@ def figure_3_7() -> Entry:
         lambda canvas: response(trace, canvas),
         command="lostmotion run --controller if_then_constant --targets 0.14,0.28,0.42",
         notes=(
-            "The thesis reports its bounces at single positions and calls them small; how large they are depends on the "
-            "pace of the loop, which it does not give. Ours decides every 9 s, after the stem has settled.",
+            "How large the bounces are depends on the pace of the loop, which the thesis does not give. Ours decides "
+            "every 9 s, after the stem has settled.",
         ),
-    )
-
-
-def figure_3_9() -> Entry:
-    """The two thresholds."""
-    x = np.linspace(0.0, DESIGN.travel, 50)
-    line = np.array([threshold_line_psi(v, DESIGN.compliance, DESIGN.a1, DESIGN.a2) for v in x])
-    low, high = float(line[0] - DESIGN.a2), float(DESIGN.a1 + x[-1] / DESIGN.compliance - line[-1])
-
-    def draw(canvas: Canvas) -> None:
-        axes = canvas.subplots()
-        axes.plot(DESIGN.a1 + x / DESIGN.compliance, x, color=BLUE, lw=1.2, label="closing curve")
-        axes.plot(DESIGN.a2 + x / DESIGN.compliance, x, color=RED, lw=1.2, label="opening curve")
-        axes.axvline(8.12, color=GREY, lw=1.0, label="8.12 psi (3-8)")
-        axes.plot(line, x, color=GREY, lw=1.0, ls="--", label="line (3-9)")
-        axes.set(xlabel="pressure [psi]", ylabel="position [in]")
-        axes.legend(frameon=False, fontsize=8)
-
-    return Entry(
-        "3-9",
-        "Figures 3-8 and 3-9: constant threshold and threshold line",
-        "The distance to a constant threshold depends on the position; the distance to the line does not.",
-        "The line is half a deadband away from both curves everywhere.",
-        (
-            Number("distance to the opening curve", None, low, "psi", 2),
-            Number("distance to the closing curve", None, high, "psi", 2),
-        ),
-        draw,
     )
 
 

@@ -78,13 +78,15 @@ def figure_2_8() -> Entry:
         "Figure 2-8: Nyquist curve and describing function",
         "The first-order curve stays in the right half plane and never meets -1 / N(A): no limit cycle. Higher-order "
         "terms might change that.",
-        "They do. One lag alone never hunts, as the thesis says. The positional P law does not hunt with converter lag, "
-        "a tick of delay and sampling either. But the incremental law of figure 3-1 has an accumulator in it, and a PI "
-        "law an integrator, and both meet -1 / N(A) when their gain is large enough. Kp = 3 psi/in, the thesis's own "
-        "value, lies beyond that border in the incremental reading, which is what figure 3-2 shows. Where the stem's "
-        "rate limit of 0.12 in/s takes part, the describing function of the play alone is too small; the harmonic "
-        "balance, which has play and rate limit in the time domain, is right there too. (The largest oscillations "
-        "measured are a little smaller than balanced, because the bench ends at 0 psi.)",
+        "They do. One lag alone never hunts, as the thesis says. The positional P law does not hunt with converter "
+        "lag, a tick of delay and sampling either. But the incremental law of figure 3-1 has an accumulator in it, and "
+        "a PI law an integrator, and both meet -1 / N(A) when their gain is large enough. Kp = 3 psi/in, the thesis's "
+        "own value, lies beyond that border in the incremental reading, which is what figure 3-2 shows. Where the "
+        "stem's rate limit of 0.12 in/s takes part, the describing function of the play alone is too small; the "
+        "harmonic balance, which has play and rate limit in the time domain, is right there too. (The largest "
+        "oscillations measured are a little smaller than balanced, because the bench ends at 0 and 20 psi. Just below "
+        "the border, `pi` with Ki = 6, the valve hunts although the describing function says no: one harmonic is not "
+        "all of it.)",
         (
             Number("limit cycles of the thesis's loop", 0.0, float(len(predict(thesis_loop(), DESIGN))), "", 0),
             Number(

@@ -36,9 +36,9 @@ class Mpc(Law[MpcState]):
     """
 
     horizon_s: float = 4.0
-    move_cost_in: float = 0.0009
+    move_cost_in: float = 0.0012
     lead: float = 2.0
-    omega: float = 1.2
+    omega: float = 1.5
     model: Predictor = field(default=predict_positions, repr=False)
 
     def start(self, seen: Seen, target_in: float) -> MpcState:

@@ -38,15 +38,15 @@ class Overdrive(Law[OverdriveState]):
     much less than the miss is asked for when turning back.
     """
 
-    approach_s: float = 0.6
+    approach_s: float = 0.5
     lead: float = 2.0
-    again_in: float = 0.012
+    again_in: float = 0.005
     same_in: float = 0.0005
-    back_in: float = 0.0009
+    back_in: float = 0.001
     short_in: float = 0.0006
-    patience_s: float = 3.0
+    patience_s: float = 4.0
     tolerance: float = 0.3
-    omega: float = 1.2
+    omega: float = 1.6
 
     def start(self, seen: Seen, target_in: float) -> OverdriveState:
         return OverdriveState(self._observer.start(seen), 0, seen.position_in, seen.commanded_psi)
