@@ -8,7 +8,7 @@ import threading
 from collections import deque
 from collections.abc import Sequence
 from types import TracebackType
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Self, TextIO
 
 from hal.clock import RealClock
 
@@ -74,8 +74,10 @@ class KeyboardNotes:
     def __init__(self) -> None:
         self._lines: deque[str] = deque()
         self._ended = threading.Event()
+        self._thread: threading.Thread | None = None
         if sys.stdin is not None and sys.stdin.isatty():
-            threading.Thread(target=self._listen, name="notes", daemon=True).start()
+            self._thread = threading.Thread(target=self._listen, args=(sys.stdin,), name="notes", daemon=True)
+            self._thread.start()
 
     def __call__(self) -> Sequence[str]:
         """The notes since the last call."""
@@ -86,12 +88,17 @@ class KeyboardNotes:
     def close(self) -> None:
         self._ended.set()
 
-    def _listen(self) -> None:
+    def join(self) -> None:
+        """Returns when the keyboard is no longer read."""
+        if self._thread is not None:
+            self._thread.join()
+
+    def _listen(self, keyboard: TextIO) -> None:
         while not self._ended.is_set():
-            ready, _, _ = select.select([sys.stdin], [], [], 0.2)
+            ready, _, _ = select.select([keyboard], [], [], 0.2)
             if not ready:
                 continue
-            line = sys.stdin.readline()
+            line = keyboard.readline()
             if not line:
                 return
             if line.strip():

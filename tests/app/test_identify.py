@@ -1,0 +1,87 @@
+"""`lostmotion identify`: the truth test over Modbus, and foreign files."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import run
+from control.design import load_design
+from tests.control.toy_valve import Toy, random_steps, record
+
+TRUTH = {"a1": 8.78, "a2": 5.82, "compliance": 0.19, "tau": 2.7, "rate_limit": 0.12, "travel": 0.5625, "ep.tau": 0.3}
+
+
+@pytest.fixture(scope="module")
+def staircase(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp("runs") / "staircase"
+    assert run(["sweep", "staircase", "--set", "step=0.3", "--set", "dwell_s=12", "--out", str(folder), "--json"]) == 0
+    return folder
+
+
+def test_a_sweep_over_modbus_gives_the_truth(
+    staircase: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert run(["identify", str(staircase), "--out", str(tmp_path / "m.toml"), "--json"]) == 0
+    estimates = json.loads(capsys.readouterr().out)["estimates"]
+    held = 0
+    for name, value in TRUTH.items():
+        assert estimates[name]["value"] == pytest.approx(value, rel=0.01), name
+        low, high = estimates[name]["ci95"]
+        held += low <= value <= high
+    assert held >= 5
+    assert estimates["a1 (curves)"]["value"] == pytest.approx(8.78, abs=0.02)
+    assert estimates["a2 (curves)"]["value"] == pytest.approx(5.82, abs=0.02)
+    assert estimates["tau (63 %)"]["value"] == pytest.approx(2.7, rel=0.03)
+    design = load_design(tmp_path / "m.toml")
+    assert (design.a1, design.a2, design.tau_s) == pytest.approx((8.78, 5.82, 2.7), rel=0.01)
+
+
+def test_the_table_shows_values_intervals_and_where_the_model_is(
+    staircase: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run(["identify", str(staircase), "--out", str(tmp_path / "m.toml")]) == 0
+    said = capsys.readouterr().out
+    for word in (*TRUTH, "k_eq", "63 % rule", "95 % interval", "% of travel", "m.toml"):
+        assert word in said
+    assert (tmp_path / "m.toml").read_text(encoding="utf-8").startswith("# identified from staircase")
+
+
+def test_a_strangers_csv_in_its_own_units(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    time_s = np.arange(0.0, 240.0, 0.25)
+    toy = record(Toy(), time_s, random_steps(240.0, 0.25))
+    assert toy.pressure is not None
+    table = np.column_stack((time_s * 1e3, toy.command * 6.894757, toy.pressure * 6.894757, toy.position * 25.4))
+    np.savetxt(tmp_path / "x.csv", table, delimiter=",", header="t,u,p,x", comments="")
+    words = ["--map", "time=t,command=u,pressure=p,position=x", "--units", "time=ms,command=kPa,position=mm"]
+    assert run(["identify", str(tmp_path / "x.csv"), "--out", str(tmp_path / "m.toml"), *words]) == 0
+    design = load_design(tmp_path / "m.toml")
+    assert (design.a1, design.a2, design.compliance) == pytest.approx((8.78, 5.82, 0.19), rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("words", "code", "sentence"),
+    [
+        (["absent.csv", "--out", "m.toml"], 2, "absent.csv"),
+        (["x.csv", "--out", "m.json"], 2, "ends in .toml"),
+        (["still.csv", "--out", "m.toml"], 2, "command never changes"),
+    ],
+)
+def test_bad_input_is_one_sentence(
+    words: list[str],
+    code: int,
+    sentence: str,
+    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    rows = [f"{0.1 * i:.1f},9,9,0.{i % 7}" for i in range(100)]
+    Path("still.csv").write_text("time_s,command_psi,pressure_psi,position_in\n" + "\n".join(rows) + "\n")
+    assert run(["identify", *words]) == code
+    assert sentence in capsys.readouterr().err
+    assert not Path("m.toml").exists()

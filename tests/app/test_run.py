@@ -1,0 +1,101 @@
+"""`lostmotion run`: closed loops on the virtual valve."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.cli import run
+from control.controller import controller_names, make_controller
+from control.design import DesignModel
+from hal.sample import Reading, Sample
+from logs.run import read_run
+
+
+def close(*words: str) -> int:
+    return run(["run", *words])
+
+
+def test_a_loop_is_closed_recorded_and_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["--controller", "if_then_pi", "--targets", "0.3,0.1", "--hold", "40", "--out", str(tmp_path / "r")]
+    assert close(*words, "--json") == 0
+    result = json.loads(capsys.readouterr().out)
+    assert [target["target_in"] for target in result["targets"]] == [0.3, 0.1]
+    assert result["worst_final_error_percent"] < 5.0
+    recorded = read_run(tmp_path / "r")
+    assert recorded.status == "success"
+    assert recorded.start["controller"]["name"] == "if_then_pi"  # type: ignore[index]
+    assert recorded.start["design"]["a1"] == 8.78  # type: ignore[index]
+    assert recorded.rows == 800
+
+
+def test_the_record_replays_bit_for_bit(tmp_path: Path) -> None:
+    words = ["--controller", "pi", "--targets", "0.2", "--hold", "10", "--set", "ki=0.7", "--out", str(tmp_path / "r")]
+    assert close(*words) == 0
+    recorded = read_run(tmp_path / "r")
+    told = recorded.start["controller"]
+    assert isinstance(told, dict)
+    controller = make_controller(told["name"], DesignModel(), **told["settings"])
+    columns = recorded.columns
+    state, commands = None, []
+    for i in range(recorded.rows - 1):
+        t = columns["time_s"][i]
+        sample = Sample(
+            t,
+            float(columns["next_command_psi"][i]),
+            Reading(float(columns["position_in"][i]), t, 0.0),
+            Reading(float(columns["pressure_psi"][i]), t, 0.0),
+        )
+        state = controller.initial(sample, 0.2) if state is None else state
+        state, command = controller.step(state, sample, 0.2, 0.1)
+        commands.append(np.float32(command))  # the command register of the default profile holds a float32
+    assert np.array_equal(columns["next_command_psi"][1:].astype(np.float32), np.array(commands))
+
+
+def test_the_table_is_readable_in_a_pipe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert close("--controller", "open_loop", "--targets", "0.1", "--hold", "3", "--out", str(tmp_path / "r")) == 0
+    said = capsys.readouterr().out
+    assert "The valve will move" in said
+    assert "at its safe command; record:" in said
+    assert "\x1b[" not in said
+
+
+def test_controllers_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert close("--list", "--json") == 0
+    assert set(json.loads(capsys.readouterr().out)) == set(controller_names())
+
+
+def test_a_dry_run_touches_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert close("--controller", "p", "--targets", "0.1,0.2", "--dry-run", "--out", str(tmp_path / "r")) == 0
+    assert "2 targets (0.1, 0.2 in), 2 min 00 s" in capsys.readouterr().out
+    assert not (tmp_path / "r").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["--controller", "magic", "--targets", "0.1"], "'magic' does not exist"),
+        (["--controller", "p"], "give a controller and targets"),
+        (["--controller", "p", "--targets", "0.1,x"], "'x' is not a position"),
+        (["--controller", "p", "--targets", "0.1,0.9"], "target 2 is 0.9 in; the valve travels from 0 to 0.5625 in"),
+        (["--controller", "p", "--targets", "0.1", "--hold", "0"], "above 0"),
+        (["--controller", "p", "--targets", "0.1", "--set", "kd=1"], "no setting 'kd'"),
+        (["--controller", "p", "--targets", "0.1", "--design", "absent.toml"], "absent.toml"),
+        (["--controller", "p", "--targets", "0.1", "--profile", "positioner"], "takes percent"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_2(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert close(*words) == 2
+    assert sentence in capsys.readouterr().err
+    assert not list(tmp_path.rglob("run.json"))
+
+
+def test_a_port_that_is_not_there_fails_in_words(capsys: pytest.CaptureFixture[str]) -> None:
+    assert close("--controller", "p", "--targets", "0.1", "--port", "/dev/absent") == 1
+    assert "/dev/absent" in capsys.readouterr().err

@@ -1,0 +1,54 @@
+"""Opening a bench without a port: a virtual valve behind real frames, safe again on every way out."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.session import open_bench
+from hal.clock import SteppedClock
+from hal.errors import BadInput, PortFault
+from hal.profile import load_profile
+
+
+def test_the_virtual_valve_answers_over_a_pseudo_terminal_in_stepped_time() -> None:
+    with open_bench(seed=4, options={"noise": 0.0}) as session:
+        assert isinstance(session.clock, SteppedClock)
+        assert session.bench.info.port.startswith("/dev/")
+        assert "virtual valve ('thesis')" in session.title
+        assert session.aux_units["supply_psi"] == "psi"
+        session.bench.exchange(12.0)
+        start_s = session.clock.now_s()
+        for tick in range(200):
+            session.clock.sleep_until(start_s + 0.1 * (tick + 1))
+            sample = session.bench.exchange(12.0)
+        assert sample.position.value == pytest.approx(0.5625, abs=0.002)
+        assert sample.pressure is not None
+        assert sample.pressure.value == pytest.approx(12.0, abs=0.01)
+    assert session.bench.way_out is not None
+    assert session.bench.way_out.safe
+
+
+def test_an_error_inside_leaves_the_valve_safe() -> None:
+    with pytest.raises(ZeroDivisionError), open_bench() as session:
+        session.bench.exchange(10.0)
+        raise ZeroDivisionError
+    assert session.bench.way_out is not None
+    assert (session.bench.way_out.status, session.bench.way_out.safe) == ("fail", True)
+
+
+def test_effects_and_numbers_reach_the_plant() -> None:
+    with open_bench(effects=("stiction=0.4",), options={"a1": 9.0}) as session:
+        assert session.virtual["options"] == {"a1": 9.0, "effects": {"stiction": 0.4}}
+    with pytest.raises(BadInput, match="NAME=SIZE"), open_bench(effects=("stiction=big",)):
+        pass
+
+
+def test_a_profile_may_be_given_as_it_is_and_its_unit_chooses_the_plant() -> None:
+    with open_bench(profile=load_profile("virtual")) as session:
+        assert session.virtual["physics"] == "thesis"
+        assert session.command_in_force == 0.0
+
+
+def test_a_port_that_is_not_there() -> None:
+    with pytest.raises(PortFault, match="/dev/absent"), open_bench("/dev/absent"):
+        pass

@@ -1,0 +1,129 @@
+"""`lostmotion sweep` on the virtual valve: real frames over a pseudo-terminal, in stepped time."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from app.cli import run
+from app.console import RunDisplay
+from control.experiment_file import load_experiment
+from control.loop import Progress
+from logs.run import read_run
+
+SHORT = ["--set", "low=8", "--set", "high=10", "--set", "step=1", "--set", "dwell_s=2", "--set", "conditioning_s=2"]
+
+
+def sweep(*words: str) -> int:
+    return run(["sweep", *words])
+
+
+def test_a_sweep_is_announced_recorded_and_ends_safe(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sweep("staircase", *SHORT, "--out", str(tmp_path / "r"), "--note", "first", "--seed", "3") == 0
+    said = capsys.readouterr().out
+    assert "The valve will move" in said.splitlines()[0]
+    assert "14 s, commands 4 to 13 psi" in said.splitlines()[0]
+    recorded = read_run(tmp_path / "r")
+    assert recorded.status == "success"
+    assert "confirmed its safe state" in recorded.reason
+    assert recorded.rows == 140
+    assert recorded.start["experiment"]["low"] == 8  # type: ignore[index]
+    assert recorded.start["note"] == "first"
+    assert recorded.start["virtual"]["seed"] == 3  # type: ignore[index]
+    assert recorded.start["calibration"] == "virtual-two-point"
+    assert {"supply_psi", "temperature_c"} <= set(recorded.columns)
+    assert recorded.columns["position_in"].max() > 0.1
+
+
+def test_the_same_seed_gives_the_same_record(tmp_path: Path) -> None:
+    for name in ("a", "b"):
+        assert sweep("hold", "--set", "hold_s=3", "--set", "conditioning_s=1", "--out", str(tmp_path / name)) == 0
+    one, other = (read_run(tmp_path / name).columns for name in ("a", "b"))
+    assert (one["pressure_psi"] == other["pressure_psi"]).all()
+    assert (one["position_in"] == other["position_in"]).all()
+
+
+def test_a_dry_run_shows_and_touches_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sweep("nested", "--dry-run", "--out", str(tmp_path / "r")) == 0
+    said = capsys.readouterr().out
+    assert "Nothing was moved" in said
+    assert len(said.splitlines()) == 9
+    assert not (tmp_path / "r").exists()
+    assert sweep("nested", "--dry-run", "--json") == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert (facts["low"], facts["high"], facts["unit"]) == (4.0, 13.0, "psi")
+    assert facts["samples"] == pytest.approx(facts["duration_s"] / facts["period_s"])
+
+
+def test_a_file_is_written_and_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert sweep("staircase", *SHORT, "--write", str(tmp_path / "e.toml")) == 0
+    assert load_experiment(tmp_path / "e.toml").duration_s == pytest.approx(14.0)
+    capsys.readouterr()
+    assert sweep(str(tmp_path / "e.toml"), "--set", "dwell_s=1", "--json", "--out", str(tmp_path / "r")) == 0
+    outcome = json.loads(capsys.readouterr().out)
+    assert outcome["rows"] == 100
+    assert outcome["run"] == str(tmp_path / "r")
+
+
+def test_ctrl_c_closes_the_record_and_the_sweep_can_be_gone_on_with(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(self: RunDisplay, where: Progress) -> None:
+        if where.step == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(RunDisplay, "show", interrupt)
+        assert sweep("staircase", *SHORT, "--out", str(tmp_path / "a")) == 130
+    assert f"--resume {tmp_path / 'a'}" in capsys.readouterr().err
+    stopped = read_run(tmp_path / "a")
+    assert (stopped.status, stopped.rows) == ("abort", 81)
+    assert "Ctrl-C" in stopped.reason
+    assert "confirmed its safe state" in stopped.reason
+    assert sweep("--resume", str(tmp_path / "a"), "--out", str(tmp_path / "b")) == 0
+    going_on = read_run(tmp_path / "b")
+    assert going_on.start["continues"] == stopped.start["uuid"]
+    assert sorted(set(going_on.columns["step"])) == [-1.0, 1.0, 2.0, 3.0]
+    assert sweep("--resume", str(tmp_path / "b")) == 2
+    assert "nothing to go on with" in capsys.readouterr().err
+
+
+def test_the_positioner_is_swept_in_percent(tmp_path: Path) -> None:
+    assert sweep("steps", "--physics", "positioner", "--set", "heights=1", "--set", "dwell_s=4",
+                 "--set", "conditioning_s=1", "--out", str(tmp_path / "r")) == 0  # fmt: skip
+    recorded = read_run(tmp_path / "r")
+    assert recorded.units["command_percent"] == "percent"
+    assert recorded.columns["next_command_percent"].max() == 100.0
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["sawtooth"], "'sawtooth' does not exist; choose one of"),
+        ([], "name an experiment kind or file"),
+        (["hold", "--set", "at=25"], "commands 4 to 25 psi, bench 'virtual' allows 0 to 20 psi"),
+        (["hold", "--set", "at=high"], "at = 'high' must be a finite number"),
+        (["hold", "--set", "at"], "not of the form key=value"),
+        (["hold", "--period", "0.0001"], "too short"),
+        (["hold", "--period", "3"], "watchdog of device 'bench'"),
+        (["hold", "--physics", "steam"], "no physics 'steam'"),
+        (["hold", "--effect", "stiction"], "not of the form NAME=SIZE"),
+        (["hold", "--profile", "nope"], "no profile 'nope'"),
+        (["hold", "--port", "/dev/null", "--physics", "thesis"], "leave them out with --port"),
+        (["absent.toml"], "absent.toml: the experiment cannot be read"),
+        (["--resume", "absent"], "absent: does not exist"),
+    ],
+)
+def test_bad_input_is_one_sentence_and_exit_2(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert sweep(*words) == 2
+    error = capsys.readouterr().err.strip()
+    assert sentence in error
+    assert "Traceback" not in error
+    assert not list(tmp_path.rglob("run.json"))
