@@ -14,7 +14,7 @@ from control.trial import Trace
 
 FloatArray = npt.NDArray[np.float64]
 BAND_PERCENT = 0.5  # settled: within this share of travel for the rest of the hold
-CYCLE_PERCENT = 0.3  # a limit cycle: the true stem swings by more than this, at least twice, in the second half
+CYCLE_PERCENT = 0.3  # a limit cycle: the true stem swings by more than this and turns three times or more
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def score_hold(
         settling_s=None if outside.size and outside[-1] >= error.size - 1 else settling_s,
         floor_s=floor_s + period_s if floor_s > 0.0 else 0.0,
         overshoot=max(float(beyond.max()), 0.0) if floor_s > 0.0 else 0.0,
-        cycle=limit_cycle(error[error.size // 2 :]),
+        cycle=limit_cycle(error[error.size // 4 :]),
     )
 
 
@@ -127,7 +127,7 @@ def floor(valve: DesignModel, pressure_psi: float, position_in: float, target_in
 
 
 def limit_cycle(error_percent: FloatArray) -> float:
-    """Peak to peak [percent of travel] of an oscillation that turns at least four times; 0 where there is none."""
+    """Peak to peak [percent of travel] of an oscillation that turns at least three times; 0 where there is none."""
     swing = float(np.ptp(error_percent))
     if swing < CYCLE_PERCENT:
         return 0.0
@@ -139,7 +139,7 @@ def limit_cycle(error_percent: FloatArray) -> float:
             turns, direction, extreme = turns + 1, 1, float(value)
         elif (value - extreme) * direction > 0.0 or direction == 0:
             extreme = float(value) if direction else extreme
-    return swing if turns >= 4 else 0.0
+    return swing if turns >= 3 else 0.0
 
 
 def _smooth(values: FloatArray, width: int) -> FloatArray:

@@ -38,7 +38,8 @@ class PrandtlIshlinskii(Law[PlaysState]):
         x_psi = min(max(seen.position_in, 0.0), self.design.travel) / self.design.compliance
         away_psi = seen.pressure_psi - self.design.offset
         plays = tuple(min(max(x_psi, away_psi - r), away_psi + r) for r in self._widths())
-        spread_in = self._output(plays) - x_psi * self.design.compliance
+        room_in = abs(self.spread_psi) * self.design.compliance
+        spread_in = min(max(self._output(plays) - x_psi * self.design.compliance, -room_in), room_in)
         return PlaysState(plays, seen.pressure_psi, spread_in, seen.commanded_psi)
 
     def law(self, state: PlaysState, seen: Seen, target_in: float, dt_s: float) -> tuple[PlaysState, float]:
