@@ -77,8 +77,8 @@ IMPERFECTIONS = (
         "diaphragm_hole",
         "actuator",
         "mm2",
-        (0.06, 0.18, 0.62),
-        "A torn diaphragm leaks through `size` when fully stretched and through nothing when the valve is open.",
+        (0.22, 0.7, 2.4),
+        "A tear in the diaphragm flaps every 11 s: open, it leaks through up to `size`, most when stretched.",
         limit=5.0,
         outsider=True,
     ),
@@ -86,7 +86,7 @@ IMPERFECTIONS = (
         "snap_region",
         "actuator",
         "psi",
-        (0.012, 0.035, 0.12),
+        (0.45, 0.7, 1.1),
         "A buckled spring seat gives way by `size` around mid-travel, faster than the spring stiffens.",
         limit=3.0,
         outsider=True,
@@ -95,7 +95,7 @@ IMPERFECTIONS = (
         "water_slug",
         "actuator",
         "1",
-        (1.2, 3.2, 12.0),
+        (2.6, 7.0, 21.0),
         "Water in the tubing cuts its conductance to 1/(1 + size) for 7 s, in one of three spells of 14 s.",
         limit=1.0e4,
         outsider=True,
@@ -104,6 +104,7 @@ IMPERFECTIONS = (
 
 _RELAX_S = (10.0, 70.0)
 _HEATING_S = 170.0
+_FLAP_S = 11.0
 _SHUT_M_S = 2.0e-5  # what the damper still lets through with its pin fully in
 _PLUG_M2 = 1.5 * INCH * INCH
 
@@ -122,7 +123,7 @@ def _tube(q: Any, s: Any) -> float:
 @compiled
 def _hole(q: Any, s: Any) -> float:
     """Mass flow through the torn diaphragm to the room [kg/s]."""
-    share = min(max(s.x / q.travel, 0.0), 1.0)
+    share = min(max(s.x / q.travel, 0.0), 1.0) if s.time % _FLAP_S < 0.5 * _FLAP_S else 0.0
     # Gidlund's rule for the sonic conductance of an orifice of diameter d: C = 0.128 d^2 l/(s bar), d in mm
     conductance = 0.128 * 4.0 / math.pi * q.diaphragm_hole * share * 1.0e-8
     return flow(conductance, 0.4, 0.999, s.chamber + ATMOSPHERE, ATMOSPHERE)

@@ -36,11 +36,11 @@ class Build:
     nozzle_tau: float = 0.27  # s, signal chamber behind the nozzle
     booster_span: float = 0.12 * PSI  # Pa of signal error that opens a port fully
     booster_overlap: float = 0.0  # Pa
-    port: float = 3.0e-9  # m3/(s Pa), sonic conductance of supply and exhaust port fully open
+    port: float = 7.0e-9  # m3/(s Pa), sonic conductance of supply and exhaust port fully open
     port_b: float = 0.35  # critical pressure ratio
     line_volume: float = 1.5e-4  # m3, booster chamber and 3 m of tubing
     # tube between the converter and the diaphragm chamber
-    tube: float = 1.2e-8  # m3/(s Pa)
+    tube: float = 2.4e-8  # m3/(s Pa)
     tube_b: float = 0.25
     tube_laminar: float = 0.99  # pressure ratio above which it flows laminar
     # actuator

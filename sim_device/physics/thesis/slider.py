@@ -39,7 +39,7 @@ def _bounds(q: Any, s: Any, p: float, w: float, extra: float) -> tuple[float, fl
     middle = 0.5 * (q.a1 + q.a2)
     share = 1.0 - q.friction_in_motion
     wide = max((half + extra) * share, 0.0)
-    net = p - middle - push(q, p, w)
+    net = p - middle - push(q, s, p, w)
     low_stop, high_stop = stops(q)
     # the part of the friction that acts on the stem lets the plate strain past the stops by that much
     strain = half * q.friction_in_motion * q.compliance

@@ -66,11 +66,11 @@ def test_dry_packing_sticks_and_slips_on_a_slow_ramp() -> None:
     assert unevenness(0.9) > 0.8
 
 
-def test_a_torn_diaphragm_loses_stroke_at_the_same_pressure_reading() -> None:
+def test_a_torn_diaphragm_moves_the_stem_at_the_same_pressure_reading() -> None:
     time_s, command = held(4.0, 11.5, seconds=60)
     healthy, torn = play(time_s, command), play(time_s, command, diaphragm_hole=3.0)
-    assert healthy[1][-1] - torn[1][-1] > 0.01
-    assert abs(healthy[0][-1] - torn[0][-1]) < 0.2
+    assert np.max(healthy[1][-200:] - torn[1][-200:]) > 0.01
+    assert np.max(np.abs(healthy[0][-200:] - torn[0][-200:])) < 0.2
 
 
 def test_a_tight_regulator_bounds_the_speed() -> None:
