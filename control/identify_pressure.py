@@ -67,7 +67,7 @@ def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_
     rest = np.where(good, pressure - shape.rows, 0.0)
     width_s = _best_width_s(grid.time_s, rest, good) if good.sum() > 20 else 0.0
     correction = moving_average(grid.time_s, rest, good, width_s)
-    fine = shape.fine + np.interp(np.arange(grid.n_fine), grid.first, correction)
+    fine = shape.fine(grid, command) + np.interp(np.arange(grid.n_fine), grid.first, correction)
     rms = float(np.sqrt(np.mean(rest[good] ** 2)))
     doubts = _doubts(grid.time_s, np.where(good, rest - correction, 0.0), good, width_s)
     return PressureStage(interval, shape.gain, shape.zero, rms, width_s, doubts, fine)
@@ -82,34 +82,44 @@ def _doubts(time_s: FloatArray, noise: FloatArray, good: np.ndarray, width_s: fl
 
 @dataclass(frozen=True, slots=True)
 class _Shape:
+    """The best gain, zero and start for a time constant; `rows` is the response at the rows."""
+
+    tau_s: float
     cost: float
     gain: float
     zero: float
+    start: float
     rows: FloatArray
-    fine: FloatArray
+
+    def fine(self, grid: Grid, command: FloatArray) -> FloatArray:
+        """The response on the fine grid."""
+        fade = np.exp(-(grid.fine_time_s - grid.time_s[0]) / max(self.tau_s, 1e-6))
+        response = lagged(grid, command, self.tau_s, float(command[0]))
+        return np.asarray(self.gain * response + self.zero + self.start * fade)
 
 
 def _project(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, tau_s: float) -> _Shape:
-    """The best gain, zero and start for one time constant, by least squares that a few false readings cannot pull."""
-    fine = lagged(grid, command, tau_s, float(command[0]))
-    start = np.exp(-(grid.fine_time_s - grid.time_s[0]) / max(tau_s, 1e-6))
-    rows, fade = fine[grid.first], start[grid.first]
-    columns = np.column_stack((rows, np.ones_like(rows), fade))
+    """The best shape for one time constant, by least squares that a few false readings cannot pull."""
+    rows = lagged(grid, command, tau_s, float(command[0]))[grid.first]
+    middle = float(np.mean(rows[good]))
+    columns = [rows - middle, np.ones_like(rows), np.exp(-(grid.time_s - grid.time_s[0]) / max(tau_s, 1e-6))]
     if np.ptp(rows[good]) < 1e-9:
-        columns = columns[:, 1:]
+        columns[0] = np.zeros_like(rows)
+    basis = np.stack(columns)
     weight = good.astype(np.float64)
     target = np.where(good, pressure, 0.0)
     for _ in range(3):
-        root = np.sqrt(weight)[:, None]
-        found = np.linalg.lstsq(columns * root, target * root[:, 0], rcond=None)[0]
-        rest = np.where(good, pressure - columns @ found, 0.0)
+        weighted = basis * weight
+        # Plain loops: the threads of a linear algebra library cost more than three columns are worth.
+        normal, right = np.einsum("ik,jk->ij", weighted, basis), np.einsum("ik,k->i", weighted, target)
+        found = np.linalg.lstsq(normal, right, rcond=1e-12)[0]
+        fitted = np.einsum("i,ik->k", found, basis)
+        rest = np.where(good, pressure - fitted, 0.0)
         limit = 3.0 * 1.4826 * float(np.median(np.abs(rest[good]))) + 1e-12
         weight = good * np.minimum(1.0, limit / np.maximum(np.abs(rest), 1e-12))
-    gain = float(found[0]) if columns.shape[1] == 3 else 1.0
-    zero = float(found[-2]) if columns.shape[1] == 3 else float(found[0] - np.mean(rows[good]))
-    cost = float(np.sum(weight * rest**2))
-    full = gain * fine + zero + float(found[-1]) * start
-    return _Shape(cost, gain, zero, full[grid.first], full)
+    gain = float(found[0]) if columns[0].any() else 1.0
+    zero = float(found[1]) - gain * middle
+    return _Shape(tau_s, float(np.sum(weight * rest**2)), gain, zero, float(found[2]), np.asarray(fitted))
 
 
 def _interval(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, log_tau: float) -> Interval:

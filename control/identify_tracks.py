@@ -10,7 +10,7 @@ import numpy as np
 from control.identify_model import lagged, make_grid
 from control.identify_pressure import PressureStage, fit_pressure
 from control.identify_readings import false_readings
-from control.identify_valve import Track
+from control.identify_valve import Track, first_position
 from logs.recording import FloatArray, Recording
 
 FEWEST_ROWS = 30
@@ -72,5 +72,7 @@ def tracks_of(
         grid = make_grid(recording.time_s[start:stop])
         pressure = np.interp(grid.fine_time_s, fine_s, fine)
         doubt = tuple(np.interp(grid.fine_time_s, recording.time_s, each) for each in doubts)
-        tracks.append(Track(grid, pressure, np.where(good, position, 0.0), good, doubt))
+        position = np.where(good, position, 0.0)
+        begin = first_position(grid.time_s, position, good)
+        tracks.append(Track(grid, pressure, position, good, begin, doubt))
     return tracks

@@ -31,16 +31,17 @@ class Track:
     pressure: FloatArray
     position: FloatArray
     good: np.ndarray
+    start: float  # the position at the first row
     doubts: tuple[FloatArray, ...] = ()  # what the pressure may be off by, on the grid
 
-    @property
-    def start(self) -> float:
-        """The position at the first row: a line through the good readings of the first second, or the first five."""
-        time_s, position = self.grid.time_s[self.good], self.position[self.good]
-        count = min(time_s.size, max(5, int(np.searchsorted(time_s, time_s[0] + 1.0))))
-        slope, start = np.polyfit(time_s[:count] - self.grid.time_s[0], position[:count], 1)
-        steady = abs(slope) * (time_s[count - 1] - time_s[0]) < 6.0 * fast_noise(position)
-        return float(np.mean(position[:count]) if steady else start)
+
+def first_position(time_s: FloatArray, position: FloatArray, good: np.ndarray) -> float:
+    """The position at the first row: a line through the good readings of the first second, or the first five."""
+    when, values = time_s[good], position[good]
+    count = min(when.size, max(5, int(np.searchsorted(when, when[0] + 1.0))))
+    slope, start = np.polyfit(when[:count] - time_s[0], values[:count], 1)
+    steady = abs(slope) * (when[count - 1] - time_s[0]) < 6.0 * fast_noise(values)
+    return float(np.mean(values[:count]) if steady else start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +104,7 @@ def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
     keep = slice(None, None, stride)
     grid = make_grid(time_s[keep], 0.25 * least_period_s)
     pressure = np.interp(grid.fine_time_s, track.grid.fine_time_s, track.pressure)
-    return Track(grid, pressure, track.position[keep], track.good[keep])
+    return Track(grid, pressure, track.position[keep], track.good[keep], track.start)
 
 
 def fit_valve(tracks: Sequence[Track], starts: Sequence[FloatArray] = ()) -> tuple[ValveFit, Freedom]:
