@@ -14,7 +14,7 @@ from control.trial import Trace
 
 FloatArray = npt.NDArray[np.float64]
 BAND_PERCENT = 0.5  # settled: within this share of travel for the rest of the hold
-CYCLE_PERCENT = 0.3  # a limit cycle: the true stem swings by more than this and turns three times or more
+CYCLE_PERCENT = 0.3  # a limit cycle swings by more than this, turns three times or more, and does not end
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def score_hold(
         settling_s=None if outside.size and outside[-1] >= error.size - 1 else settling_s,
         floor_s=floor_s + period_s if floor_s > 0.0 else 0.0,
         overshoot=max(float(beyond.max()), 0.0) if floor_s > 0.0 else 0.0,
-        cycle=limit_cycle(error[error.size // 4 :]),
+        cycle=limit_cycle(error[error.size // 4 :]) if np.ptp(error[-error.size // 3 :]) > CYCLE_PERCENT else 0.0,
     )
 
 

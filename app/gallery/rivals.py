@@ -73,7 +73,8 @@ def figure_rivals(processes: int = 2) -> Entry:
         f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), one seed each; errors of the true stem in the last "
         "quarter of every hold, in percent of travel. Settling is to 0.5 %; the floor is the time in which no "
         "controller can be faster: full supply, or none, from the moment of the step, plus one tick. A limit cycle is "
-        "a swing of more than 0.3 % that turns at least three times after the first quarter of a hold. `p` and "
+        "a swing of more than 0.3 % that turns at least three times after the first quarter of a hold and is still "
+        "there in the last third; one such hold in a trial counts. `p` and "
         "`open_loop` never settle. The valve starts vented and the learning controllers start with the design's "
         "numbers, so that the first hold is part of the score.",
         tuple(numbers),
