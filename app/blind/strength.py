@@ -1,0 +1,58 @@
+"""How large a fault is against the noise of the readings: the scale on which every blind result is sorted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from sim_device.physics.catalog import make_physics
+from sim_device.physics.offline import record
+
+if TYPE_CHECKING:
+    from logs.recording import FloatArray
+    from sim_device.sealed import Label
+
+#: Edges of the strata, in units of the noise of a position reading.
+EDGES = (1.0, 3.0, 10.0)
+STRATA = ("below 1", "1 to 3", "3 to 10", "above 10")
+
+
+@dataclass(frozen=True, slots=True)
+class Strength:
+    """`gap_in`: RMS by which the faults move the position reading; `floor_in`: RMS of that reading's noise [in]."""
+
+    gap_in: float
+    floor_in: float
+
+    @property
+    def ratio(self) -> float:
+        """Fault over noise; 0 for a healthy valve."""
+        return self.gap_in / self.floor_in
+
+
+def strength(label: Label, time_s: FloatArray, command: FloatArray) -> Strength:
+    """Plays a command, shape (n,), to the valve with and without its faults, both without noise, and compares.
+
+    This is the raw distance, before any re-tuning of the model's own numbers. It needs the truth, so it can only be
+    worked out after the seal is broken.
+    """
+    effects = {cause.key: cause.size for cause in label.causes}
+
+    def read(noise: float, faults: dict[str, float]) -> FloatArray:
+        physics = make_physics(label.family, label.physics_seed, effects=faults, noise=noise)
+        return record(physics, time_s, command)[1]
+
+    healthy = read(0.0, {})
+    floor = _rms(read(1.0, {}) - healthy)
+    return Strength(_rms(read(0.0, effects) - healthy) if effects else 0.0, floor)
+
+
+def stratum(ratio: float) -> str:
+    """The name of the stratum that a ratio falls into."""
+    return STRATA[int(np.searchsorted(EDGES, ratio, side="right"))]
+
+
+def _rms(values: FloatArray) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
