@@ -16,6 +16,8 @@ import click
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
+    from hal.clock import Clock
+    from sim_device.device import Options
     from sim_device.server import VirtualDevice
     from sim_device.valve import ValvePhysics
 
@@ -61,28 +63,24 @@ def command(
     It prints the port that a master opens, and runs until Ctrl-C or SIGTERM; then it removes its link. The registers
     lie where the profile puts them (docs/register-map.md), so any profile can be emulated.
     """
-    from hal.clock import RealClock, SteppedClock
     from hal.profile import load_profile
-    from sim_device.device import Options
     from sim_device.faults import parse_faults
     from sim_device.server import VirtualDevice
 
     profile = load_profile(profile_name)
-    if sealed is None:
-        physics = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
-        valve, said = _valve(physics, effects, seed), {"physics": physics}
-    else:
+    if sealed is not None:
         valve, said = _sealed(sealed, commitment, bool(physics or effects))
-    stepped = time_kind == "stepped"
+    else:
+        valve, said = _open(physics or _usual(profile.command_unit), effects, seed)
     device = VirtualDevice(
         profile,
         valve,
-        SteppedClock() if stepped else RealClock(),
+        _clock(time_kind),
         link=port_link,
         tcp=tcp,
         faults=parse_faults(faults, seed=seed, timeout_s=fault_timeout),
         pace_baud=pace,
-        options=Options(refresh_s=refresh, simulation_block=stepped),
+        options=_options(refresh, time_kind),
     )
     _serve(device, said | {"profile": profile_name, "units": sorted(device.units)}, as_json)
 
@@ -102,8 +100,27 @@ def _sealed(seed: str, commitment: Path | None, chosen: bool) -> tuple[ValvePhys
     return drawn.physics, {"physics": f"{drawn.family}, sealed", "commitment": drawn.commitment}
 
 
-def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
-    """Raises: `BadInput` for a plant, an effect or a size that does not exist."""
+def _clock(time_kind: str) -> Clock:
+    from hal.clock import RealClock, SteppedClock
+
+    return SteppedClock() if time_kind == "stepped" else RealClock()
+
+
+def _options(refresh_s: float, time_kind: str) -> Options:
+    from sim_device.device import Options
+
+    return Options(refresh_s=refresh_s, simulation_block=time_kind == "stepped")
+
+
+def _usual(command_unit: str) -> str:
+    return "positioner" if command_unit == "percent" else "thesis"
+
+
+def _open(physics: str, effects: tuple[str, ...], seed: int) -> tuple[ValvePhysics, dict[str, str]]:
+    """The valve as the operator wants it, and its name.
+
+    Raises: `BadInput` for a plant, an effect or a size that does not exist.
+    """
     from sim_device.physics.catalog import make_physics
 
     sizes: dict[str, float] = {}
@@ -114,7 +131,7 @@ def _valve(physics: str, effects: tuple[str, ...], seed: int) -> ValvePhysics:
         except ValueError:
             raise BadInput(f"effect '{text}' has no size; write NAME=NUMBER, for example stiction=0.4") from None
     options: dict[str, object] = {"effects": sizes} if sizes else {}
-    return make_physics(physics, seed, **options)
+    return make_physics(physics, seed, **options), {"physics": physics}
 
 
 def _serve(device: VirtualDevice, said: Mapping[str, object], as_json: bool) -> None:
