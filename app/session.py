@@ -112,12 +112,8 @@ def open_bench(
     However the context is left, the valve is at its safe command and the port is closed.
     Raises: `BadInput`, `PortFault`, `WireFault`, `SafetyTrip`.
     """
-    from hal.clock import RealClock
     from hal.errors import BadInput
-    from hal.latch import Latch
-    from hal.modbus_bench import ModbusBench
     from hal.profile import Profile, load_profile
-    from hal.safety import SafeBench
 
     found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
     if port is not None:
@@ -125,13 +121,8 @@ def open_bench(
             raise BadInput(
                 "--physics, --effect, --sealed and --real-time belong to the virtual valve; leave them out with --port"
             )
-        clock: Clock = RealClock()
-        latch = Latch.of_port(port)
-        if acknowledge:
-            latch.acknowledge()
-        inner = ModbusBench(found, port, clock, acknowledge=acknowledge)
-        with SafeBench(inner, found.limits, clock, latch=latch) as bench:
-            yield Session(bench, clock, found, {})
+        with _at_port(found, port, acknowledge) as session:
+            yield session
         return
     plant_options = dict(options or {})
     if effects:
@@ -144,6 +135,21 @@ def open_bench(
         return
     with _virtual(found, physics, seed, plant_options, real_time) as session:
         yield session
+
+
+@contextmanager
+def _at_port(profile: Profile, port: str, acknowledge: bool) -> Iterator[Session]:
+    from hal.clock import RealClock
+    from hal.latch import Latch
+    from hal.modbus_bench import ModbusBench
+    from hal.safety import SafeBench
+
+    clock, latch = RealClock(), Latch.of_port(port)
+    if acknowledge:
+        latch.acknowledge()
+    inner = ModbusBench(profile, port, clock, acknowledge=acknowledge)
+    with SafeBench(inner, profile.limits, clock, latch=latch) as bench:
+        yield Session(bench, clock, profile, {})
 
 
 def _parse_effects(words: Sequence[str]) -> dict[str, float]:

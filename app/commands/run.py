@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -44,29 +44,16 @@ def command(
     design: Path | None,
     settings: tuple[str, ...],
     period_s: float,
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    real_time: bool,
-    effects: tuple[str, ...],
-    sealed: str | None,
-    out: Path | None,
-    note: str,
-    operator: str,
-    live: bool,
     list_them: bool,
     dry_run: bool,
     as_json: bool,
+    **bench: Any,
 ) -> None:
-    from app.job import perform
     from control.controller import make_controller, parse_settings
     from control.design import DesignModel, load_design
     from control.plan import plan_targets
-    from control.tracking import judge_targets
     from hal.errors import BadInput
     from hal.profile import load_profile
-    from logs.run import read_run
 
     if list_them:
         _list(as_json)
@@ -75,19 +62,38 @@ def command(
         raise BadInput('give a controller and targets, for example: run --controller if_then_pi --targets "0.1,0.4"')
     model = DesignModel() if design is None else load_design(design)
     make_controller(controller, model, **parse_settings(settings))  # a wrong name or setting is said before anything
-    found = load_profile(profile or "virtual")
+    found = load_profile(bench["profile"] or "virtual")
     plan = plan_targets(_numbers(targets), hold_s, period_s, found.travel_in)
     if dry_run:
         _preview(plan, controller, as_json)
-        return
-    with open_bench(
-        port, found, physics=physics, seed=seed, real_time=real_time, effects=effects, sealed=sealed
-    ) as session:
+    else:
+        _run(plan, controller, settings, model, as_json, **{**bench, "profile": found})
+
+
+def _run(
+    plan: Plan,
+    controller: str,
+    settings: tuple[str, ...],
+    model: DesignModel,
+    as_json: bool,
+    *,
+    out: Path | None,
+    note: str,
+    operator: str,
+    live: bool,
+    seed: int,
+    **bench: Any,
+) -> None:
+    from app.job import perform
+    from control.tracking import judge_targets
+    from logs.run import read_run
+
+    with open_bench(seed=seed, **bench) as session:
         job = _job(session, plan, controller, settings, model, {"note": note, "operator": operator, "seed": seed})
         _announce(session, plan, controller, as_json)
         done = perform(session, job, out=out, live=live, title=controller)
-    results = judge_targets(read_run(done.folder), found.travel_in)
-    _report(results, done.folder, found.travel_in, as_json)
+        travel_in = session.profile.travel_in
+    _report(judge_targets(read_run(done.folder), travel_in), done.folder, travel_in, as_json)
 
 
 def _numbers(text: str) -> list[float]:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -34,43 +34,46 @@ if TYPE_CHECKING:
 @click.option("--json", "as_json", is_flag=True, help="Print the outcome as JSON.")
 def command(
     what: str | None,
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    real_time: bool,
-    effects: tuple[str, ...],
-    sealed: str | None,
-    out: Path | None,
-    note: str,
-    operator: str,
-    live: bool,
     settings: tuple[str, ...],
     period_s: float | None,
     resume: Path | None,
     write_to: Path | None,
     dry_run: bool,
     as_json: bool,
+    **bench: Any,
 ) -> None:
     from control.experiment_file import save_experiment
     from hal.profile import load_profile
 
-    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
-    experiment, first, continues = _experiment(what, resume, settings, seed, found.command_unit)
+    found = load_profile(bench["profile"] or ("positioner" if bench["physics"] == "positioner" else "virtual"))
+    experiment, first, continues = _experiment(what, resume, settings, bench["seed"], found.command_unit)
     if period_s is not None:
         experiment = replace(experiment, period_s=period_s)
     if write_to is not None:
         save_experiment(experiment, write_to)
         click.echo(f"wrote {write_to}")
-        return
-    if dry_run:
+    elif dry_run:
         _preview(experiment, first, as_json)
-        return
+    else:
+        _sweep(experiment, first, continues, as_json, **{**bench, "profile": found})
+
+
+def _sweep(
+    experiment: Experiment,
+    first: int,
+    continues: dict[str, object],
+    as_json: bool,
+    *,
+    out: Path | None,
+    note: str,
+    operator: str,
+    live: bool,
+    seed: int,
+    **bench: Any,
+) -> None:
     from app.job import perform
 
-    with open_bench(
-        port, found, physics=physics, seed=seed, real_time=real_time, effects=effects, sealed=sealed
-    ) as session:
+    with open_bench(seed=seed, **bench) as session:
         job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
         _announce(session, experiment, job, as_json)
         done = perform(session, job, out=out, live=live, title=experiment.kind)
