@@ -60,8 +60,7 @@ def command(
 ) -> None:
     """Run the virtual Modbus device on a pseudo-terminal or a socket, until stopped.
 
-    It prints the port that a master opens, and runs until Ctrl-C or SIGTERM; then it removes its link. The registers
-    lie where the profile puts them (docs/register-map.md), so any profile can be emulated.
+    It prints the port that a master opens; the registers lie where the profile puts them (docs/register-map.md).
     """
     from hal.profile import load_profile
     from sim_device.faults import parse_faults
