@@ -124,9 +124,7 @@ def open_bench(
         with _at_port(found, port, acknowledge) as session:
             yield session
         return
-    plant_options = dict(options or {})
-    if effects:
-        plant_options["effects"] = _parse_effects(effects)
+    plant_options = {**(options or {}), **({"effects": _parse_effects(effects)} if effects else {})}
     if sealed is not None:
         if physics or plant_options:
             raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics and --effect")
