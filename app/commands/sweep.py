@@ -151,8 +151,9 @@ def _announce(session: Session, experiment: Experiment, job: Job, as_json: bool)
     from control.preview import duration_words
 
     low, high = experiment.range
+    longest = "at most " if experiment.until_settled else ""
     click.echo(
-        f"{experiment.kind} on {session.title}: {duration_words(job.plan.duration_s)}, "
+        f"{experiment.kind} on {session.title}: {longest}{duration_words(job.plan.duration_s)}, "
         f"commands {low:g} to {high:g} {experiment.unit} every {experiment.period_s:g} s. The valve will move.",
         err=as_json,
     )
