@@ -14,7 +14,7 @@ from control.trial import Trace
 
 FloatArray = npt.NDArray[np.float64]
 BAND_PERCENT = 0.5  # settled: within this share of travel for the rest of the hold
-CYCLE_PERCENT = 0.3  # a limit cycle swings by more than this, turns three times or more, and does not end
+CYCLE_PERCENT = 0.6  # a limit cycle leaves a band of +-0.3 %, turns three times or more, and does not end
 
 
 @dataclass(frozen=True, slots=True)

@@ -169,6 +169,12 @@ def figure_3_10() -> Entry:
         ),
         lambda canvas: response(trace, canvas),
         command="lostmotion run --controller if_then_line --targets 0.14,0.28,0.42",
+        notes=(
+            "The sizes of the two imperfections (0.08 psi of converter hysteresis, springs 5 % stiff) were chosen by "
+            "trying a handful, so that the opening error comes near 2.2 %; what emerges is its kind, not its size. Over "
+            "seeds 0 to 7 the largest opening error is 2.0 to 2.6 %, the largest closing error 1.1 to 1.6 % (seed 1, "
+            "shown, is at the low end): larger when opening, but not, as in the thesis, zero when closing.",
+        ),
     )
 
 
@@ -188,6 +194,10 @@ def figure_3_12() -> Entry:
         ),
         lambda canvas: response(trace, canvas),
         command="lostmotion run --controller if_then_pi --targets 0.14,0.28,0.42",
+        notes=(
+            "The same bench; over seeds 0 to 7 the largest steady error is 1.0 to 1.4 %, and the largest swing in the "
+            "last third of a hold 0.4 to 1.6 %: a correction sometimes comes late, where the thesis saw none.",
+        ),
     )
 
 

@@ -42,7 +42,7 @@ def test_settling_is_the_last_time_outside() -> None:
 def test_limit_cycles_turn() -> None:
     t = np.arange(400) / 10.0
     assert limit_cycle(np.sin(t)) == pytest.approx(2.0, abs=0.02)
-    assert limit_cycle(0.1 * np.sin(t)) == 0.0
+    assert limit_cycle(0.25 * np.sin(t)) == 0.0
     assert limit_cycle(np.exp(-t)) == 0.0
 
 
