@@ -9,8 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.score import score
-from twin.choose.search import Findings
+from twin.choose.search import Findings, size_of
 from twin.fit.fitting import Fit
 
 
@@ -60,7 +59,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         if better is None:
             break
         accepted = better
-        size = len(better.space.causes)
+        size = size_of(better)
     before = max(findings.none.mse - floor, 0.0)
     rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
     explained = size > 0 and rest < rules.unexplained
@@ -70,11 +69,10 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
 
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:
     """Whether the larger hypothesis earns its further causes."""
-    rows = findings.channel.rows
     gain = small.mse - large.mse
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
-    significant = score(large, rows, findings.phi) - score(small, rows, findings.phi) > rules.evidence
+    significant = findings.score(large) - findings.score(small) > rules.evidence
     material = gain > max(rules.gain, floor - 1.0, rules.share * before)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before

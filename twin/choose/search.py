@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.choose.candidates import effect_causes, number_causes
-from twin.choose.score import inflation, score
+from twin.choose.score import Yardstick, make_yardstick
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -38,24 +38,32 @@ class SearchRules:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Findings:
-    """All hypotheses fitted on a channel. `phi`: samples worth one independent sample."""
+    """All hypotheses fitted on a channel, and what they are measured with."""
 
     channel: Channel
     none: Fit
     retuned: Fit
     fits: tuple[Fit, ...]
-    phi: float
+    yardstick: Yardstick
+
+    @property
+    def phi(self) -> float:
+        """Residual samples of the best hypothesis that are worth one independent one."""
+        return self.yardstick.phi
+
+    def score(self, fit: Fit) -> float:
+        """Tempered log-evidence of one of the hypotheses."""
+        return self.yardstick.score(fit)
 
     def scored(self) -> list[tuple[float, Fit]]:
         """All hypotheses with their scores, best first; `none` is among them."""
-        rows = self.channel.rows
-        pairs = [(score(f, rows, self.phi), f) for f in (self.none, *self.fits)]
+        pairs = [(self.score(f), f) for f in (self.none, *self.fits)]
         return sorted(pairs, key=lambda pair: -pair[0])
 
     def best_of_size(self, size: int) -> Fit | None:
-        """The hypothesis with `size` causes and the highest score, or None."""
-        same = [f for f in (self.none, *self.fits) if len(f.space.causes) == size]
-        return max(same, key=lambda f: score(f, self.channel.rows, self.phi)) if same else None
+        """The hypothesis of `size` (see `size_of`) with the highest score, or None."""
+        same = [f for f in (self.none, *self.fits) if size_of(f) == size]
+        return max(same, key=self.score) if same else None
 
 
 @dataclass(slots=True)
@@ -83,12 +91,13 @@ class Searcher:
             found += level
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
-        phi = inflation(best.residuals, self.channel.use)
-        return Findings(self.channel, none, retuned, tuple(found), phi)
+        return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
 
     def _singles(self) -> list[Fit]:
         causes = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
-        fits = self._fit_all([(c,) for c in causes], [], self.rules.rounds, "one cause")
+        numbers = number_causes(self.channel)
+        pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
+        fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
         fits = best_forms(fits, self.channel.rows)
         return self._polished(fits)
 
@@ -136,12 +145,19 @@ class Searcher:
         return tuple(c.name.removeprefix("parameter:") for c in causes)
 
 
+def size_of(fit: Fit) -> int:
+    """How much a hypothesis claims: its effects and accused numbers; wrong numbers alone are one claim together."""
+    effects = sum(1 for c in fit.space.causes if c.effect is not None)
+    return len(fit.space.causes) if effects else min(len(fit.space.causes), 1)
+
+
 def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
     """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause."""
+    plain = Yardstick(rows)
     best: dict[tuple[str, ...], Fit] = {}
     for one in fits:
         key = tuple(sorted(one.names))
-        if key not in best or score(one, rows, 1.0) > score(best[key], rows, 1.0):
+        if key not in best or plain.score(one) > plain.score(best[key]):
             best[key] = one
     return list(best.values())
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.choose.decide import Decision
-from twin.choose.score import score
+from twin.choose.search import size_of
 from twin.fit.fitting import Fit
 
 
@@ -37,10 +37,9 @@ class Weighed:
 
 def weigh(decision: Decision, weights: Weights) -> Weighed:
     """Weighs all hypotheses of a channel around the accepted one."""
-    rows, phi = decision.findings.channel.rows, decision.findings.phi
     fits = _comparable(decision)
-    scores = np.array([score(f, rows, phi) for f in fits])
-    scores = np.minimum(scores, score(decision.accepted, rows, phi))
+    scores = np.array([decision.findings.score(f) for f in fits])
+    scores = np.minimum(scores, decision.findings.score(decision.accepted))
     odds = np.exp((scores - scores.max()) / weights.temperature)
     odds /= odds.sum()
     names = sorted({name for f in fits for name in f.names})
@@ -51,9 +50,9 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
 
 def _comparable(decision: Decision) -> list[Fit]:
     """Hypotheses no larger than the accepted one: what a further cause would have gained has been weighed already."""
-    size = len(decision.accepted.space.causes)
+    size = size_of(decision.accepted)
     everything = (decision.findings.none, *decision.findings.fits)
-    return [f for f in everything if len(f.space.causes) <= size or f is decision.accepted]
+    return [f for f in everything if size_of(f) <= size or f is decision.accepted]
 
 
 def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: Weights) -> tuple[tuple[str, ...], ...]:
