@@ -94,7 +94,7 @@ def figure_3_4() -> Entry:
         "3-4",
         "Figure 3-4: PI control",
         "Windup at once, so anti-windup was added; large fluctuations and steady errors remained.",
-        "With Ki = 8 psi/(in s) the loop lies beyond the border of item 2-8 and hunts. With Ki = 1 it does not hunt, "
+        "The thesis does not give Ki. With Ki = 8 psi/(in s) the loop lies beyond the border of item 2-8 and hunts. With Ki = 1 it does not hunt, "
         "but half a minute passes in the deadband at every turn, longer than most of the thesis's steps. Without "
         "anti-windup and with only 11 psi of supply, the way back from a target out of reach starts later.",
         (
@@ -159,8 +159,8 @@ def figure_3_10() -> Entry:
         "No bounces; the largest steady error is 2.2 %, and only when the pressure is released and the valve opens.",
         "The rule adds g e to the *measured* pressure. Where the converter stops a little above its set point when it "
         "lets air out (a relieving regulator's hysteresis; 0.08 psi here), the rule comes to rest when g e equals that "
-        "remainder: 0.08 psi x 0.19 in/psi = 2.7 % of travel at most, and only when opening. Closing errors have "
-        "another cause, a first correction in the other direction. Without the hysteresis the error goes away.",
+        "remainder: 0.08 psi x 0.19 in/psi = 2.7 % of travel at most. Closing moves end too far closed as well, though "
+        "less; we think those whose last correction was an opening one. On the valve as designed the error goes away.",
         (
             Number("largest error, opening", 2.2, float(np.abs(opening).max()), "% of travel", 1),
             Number("largest error, closing", 0.0, float(np.abs(closing).max()), "% of travel", 1),
@@ -171,8 +171,8 @@ def figure_3_10() -> Entry:
         command="lostmotion run --controller if_then_line --targets 0.14,0.28,0.42",
         notes=(
             "The sizes of the two imperfections (0.08 psi of converter hysteresis, springs 5 % stiff) were chosen by "
-            "trying a handful, so that the opening error comes near 2.2 %; what emerges is its kind, not its size. Over "
-            "seeds 0 to 7 the largest opening error is 2.0 to 2.6 %, the largest closing error 1.1 to 1.6 % (seed 1, "
+            "trying a handful, so that the opening error comes near 2.2 %; what emerges is its kind, not its size. "
+            "Over seeds 0 to 7 the largest opening error is 2.0 to 2.6 %, the largest closing error 1.1 to 1.6 % (seed 1, "
             "shown, is at the low end): larger when opening, but not, as in the thesis, zero when closing.",
         ),
     )
