@@ -94,7 +94,8 @@ def figure_3_4() -> Entry:
         "3-4",
         "Figure 3-4: PI control",
         "Windup at once, so anti-windup was added; large fluctuations and steady errors remained.",
-        "The thesis does not give Ki. With Ki = 8 psi/(in s) the loop lies beyond the border of item 2-8 and hunts. With Ki = 1 it does not hunt, "
+        "The thesis does not give Ki. "
+        "With Ki = 8 psi/(in s) the loop lies beyond the border of item 2-8 and hunts. With Ki = 1 it does not hunt, "
         "but half a minute passes in the deadband at every turn, longer than most of the thesis's steps. Without "
         "anti-windup and with only 11 psi of supply, the way back from a target out of reach starts later.",
         (
@@ -172,8 +173,8 @@ def figure_3_10() -> Entry:
         notes=(
             "The sizes of the two imperfections (0.08 psi of converter hysteresis, springs 5 % stiff) were chosen by "
             "trying a handful, so that the opening error comes near 2.2 %; what emerges is its kind, not its size. "
-            "Over seeds 0 to 7 the largest opening error is 2.0 to 2.6 %, the largest closing error 1.1 to 1.6 % (seed 1, "
-            "shown, is at the low end): larger when opening, but not, as in the thesis, zero when closing.",
+            "Over seeds 0 to 7 the largest opening error is 2.0 to 2.6 %, the largest closing error 1.1 to 1.6 % "
+            "(seed 1, shown, is at the low end): larger when opening, but not, as in the thesis, zero when closing.",
         ),
     )
 
