@@ -1,0 +1,70 @@
+"""The E/P converter one row at a time: the compiled passes of `twin/kernels/ep.py` with the state between the rows."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command
+from twin.slots import (
+    EP_BAND,
+    EP_BAND_MODE,
+    EP_CLIP,
+    EP_DEAD_S,
+    EP_GAIN,
+    EP_RATE_DOWN,
+    EP_RATE_UP,
+    EP_SUPPLY,
+    EP_ZERO,
+    FOREVER,
+)
+
+
+class Converter:
+    """Command in, pressure out. `time_s`, `command`: the first row; `p0`: the pressure there."""
+
+    def __init__(self, c: FloatArray, time_s: float, command: float, p0: float) -> None:
+        self._c = c
+        self.pressure = p0
+        self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
+        self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
+        bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP]) < FOREVER
+        self._follow = _follow_bounded if bounded else _follow
+
+    def advance(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
+        """Pressure on the fine points of the row, shape (steps + 1,); `command` was in force over the row."""
+        goal = self._goal(time_s, offsets, command)
+        out = np.empty(int(offsets[1]) + 1)
+        self._follow(time_s, offsets, goal, self._c, self.pressure, out)
+        self.pressure = float(out[-1])
+        return out
+
+    def _goal(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
+        c = self._c
+        goal = np.array([command, command])
+        if c[EP_DEAD_S] > 0.0:
+            goal = self._delayed(time_s, offsets, command)
+        if c[EP_BAND_MODE] in (1.0, 2.0):
+            source, goal = goal, np.empty(goal.size)
+            _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
+            self._held = float(goal[-1])
+        bounded: FloatArray = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+        return bounded
+
+    def _delayed(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
+        """The commands of a dead time ago, mean over each fine step; forgets what no step can need again."""
+        dead_s = float(self._c[EP_DEAD_S])
+        self._rows.append((float(time_s[1]), command))
+        while len(self._rows) > 2 and self._rows[1][0] <= time_s[0] - dead_s:
+            self._rows.popleft()
+        times, commands = (np.array(column) for column in zip(*self._rows, strict=True))
+        steps = int(offsets[1])
+        step_s = (time_s[1] - time_s[0]) / steps
+        goal, j, begin = np.empty(steps + 1), 0, float(time_s[0]) - dead_s
+        goal[0] = command
+        for f in range(1, steps + 1):
+            goal[f], j = _mean_command(times, commands, begin, begin + step_s, j)
+            begin += step_s
+        return goal

@@ -1,0 +1,66 @@
+"""The position sensor one row at a time: `twin/kernels/sensor.py` with its state between the rows."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.kernels.play import plain_play
+from twin.kernels.sensor import _curve
+from twin.live.lag import Lag
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG_S, S_PLAY, S_STEP
+
+
+class Sensor:
+    """Stem in, reading out. The first row's time is `origin_s`, its stem `x0`."""
+
+    def __init__(self, c: FloatArray, origin_s: float, x0: float) -> None:
+        self._c = c
+        self._origin_s = origin_s
+        self._core = x0
+        self._lag = Lag(float(c[S_LAG_S]))
+        self._rows: deque[tuple[float, float]] = deque([(0.0, float(self._static(np.array([x0]), np.zeros(1))[0]))])
+
+    @property
+    def first(self) -> float:
+        """The reading at the first row."""
+        return self._rounded(self._rows[0][1])
+
+    def advance(self, time_s: FloatArray, offsets: np.ndarray, stem: FloatArray) -> float:
+        """The reading at the end of the row; `stem` on its fine points."""
+        c = self._c
+        if c[S_PLAY] > 0.0:
+            core = np.empty_like(stem)
+            plain_play(stem, 0.5 * c[S_PLAY], self._core, core)
+            self._core = float(core[-1])
+            stem = core
+        t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
+        if c[S_LAG_S] > 0.0:
+            value = float(self._lag.follow(time_s, offsets, self._static(stem, t))[-1])
+        else:
+            value = float(self._static(stem[-1:], t[-1:])[0])
+        if c[S_HOLD_S] > 0.0:
+            value = self._refreshed(float(t[-1]), value)
+        return self._rounded(value)
+
+    def _static(self, stem: FloatArray, t: FloatArray) -> FloatArray:
+        return _curve(stem, t, self._c)
+
+    def _refreshed(self, t: float, value: float) -> float:
+        """The value of the last refresh instant; rows before it are forgotten."""
+        rows = self._rows
+        rows.append((t, value))
+        period = float(self._c[S_HOLD_S])
+        at = np.floor((t - self._c[S_HOLD_PHASE_S]) / period) * period + self._c[S_HOLD_PHASE_S]
+        while len(rows) > 1 and rows[1][0] <= at:
+            rows.popleft()
+        if at <= 0.0 or len(rows) == 1:
+            return rows[0][1]
+        (t0, y0), (t1, y1) = rows[0], rows[1]
+        return float(y0 + (at - t0) / (t1 - t0) * (y1 - y0))
+
+    def _rounded(self, value: float) -> float:
+        step = float(self._c[S_STEP])
+        return float(np.round(value / step) * step) if step > 0.0 else value

@@ -1,0 +1,66 @@
+"""The model beside the bench: told each row's command, it says what the row's readings should have been.
+
+Exactly what `twin/simulate.py` says of the whole record afterwards, because the same compiled passes run here with
+their state carried from row to row. It sees no reading but the first.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from twin.live.converter import Converter
+from twin.live.sensor import Sensor
+from twin.live.valve import Valve
+from twin.plant import Plant, stem_at
+from twin.simulate import Start, step_for
+from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+
+_MOST_STEPS = 10_000
+
+
+class LiveTwin:
+    """One model through one run. Units are the model's.
+
+    `duration_s` is how long the run will take: effects that happen at a share of a recording refer to it.
+    """
+
+    def __init__(
+        self, plant: Plant, time_s: float, command: float, start: Start, duration_s: float, step_s: float | None = None
+    ) -> None:
+        c = plant.coefficients(duration_s)
+        self._step_s = step_s or step_for(plant.design)
+        self._time_s = time_s
+        self._converter = Converter(c.ep, time_s, command, start.pressure)
+        self._valve = Valve(c, time_s, start.position, start.play)
+        low, high = max(c.valve[V_LOW], c.valve[V_HARD_LOW]), min(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
+        self._sensor = Sensor(c.sensor, time_s, float(min(max(start.position, low), high)))
+        self.pressure = start.pressure
+        self.position = self._sensor.first
+
+    @classmethod
+    def at_rest(
+        cls, plant: Plant, time_s: float, command: float, reading: float, pressure: float | None, duration_s: float
+    ) -> LiveTwin:
+        """The model at rest where the first readings show the valve; without a pressure, at the command."""
+        stem = stem_at(plant.coefficients(duration_s), reading)
+        known = command if pressure is None or not math.isfinite(pressure) else pressure
+        return cls(plant, time_s, command, Start(known, stem, stem), duration_s)
+
+    def step(self, time_s: float, command: float) -> tuple[float, float]:
+        """Pressure and reading predicted at `time_s`; `command` was in force since the row before.
+
+        A row that is not later than the one before changes nothing.
+        """
+        if time_s <= self._time_s:
+            return self.pressure, self.position
+        ends = np.array([self._time_s, time_s])
+        steps = min(max(math.ceil((time_s - self._time_s) / self._step_s - 1e-9), 1), _MOST_STEPS)
+        offsets = np.array([0, steps], dtype=np.int64)
+        pressure = self._converter.advance(ends, offsets, command)
+        stem = self._valve.advance(ends, offsets, pressure)
+        self.position = self._sensor.advance(ends, offsets, stem)
+        self.pressure = float(pressure[-1])
+        self._time_s = time_s
+        return self.pressure, self.position

@@ -1,0 +1,135 @@
+"""The valve one row at a time: the compiled passes of `twin/kernels` with the state between the rows."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.effect import Coefficients
+from twin.kernels.play import plain_play, play_target
+from twin.kernels.stem import stem_pass
+from twin.live.lag import Lag
+from twin.live.stuck import Stuck
+from twin.plant import curve_tables
+from twin.slots import (
+    V_BREAKAWAY,
+    V_CREEP1,
+    V_CREEP1_TAU_S,
+    V_CREEP2,
+    V_CREEP2_TAU_S,
+    V_DRIFT_AMP,
+    V_DRIFT_RATE,
+    V_DRIFT_TAU_S,
+    V_FORCE_CREEP,
+    V_FORCE_CREEP_TAU_S,
+    V_HARD_HIGH,
+    V_HARD_LOW,
+    V_HELD,
+    V_HIGH,
+    V_IN_MOTION,
+    V_LOW,
+    V_OUTER,
+    V_OUTER_CENTRE,
+    V_OUTER_SLOPE,
+    V_RATE_CLOSE,
+    V_RATE_OPEN,
+    V_STEP,
+    V_STEP_TIME_S,
+    V_STRIBECK,
+    V_TAU_AFTER_S,
+    V_TAU_BEFORE_S,
+    V_TAU_CLOSE_S,
+    V_TAU_OPEN_S,
+    V_WEAR,
+)
+
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD]
+
+
+class Mover(Protocol):
+    """What carries the stem through one row."""
+
+    def advance(
+        self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray
+    ) -> FloatArray: ...
+
+
+class Valve:
+    """Pressure in, stem out. `x0`: the stem, `w0`: the play output at the first row, whose time is `origin_s`."""
+
+    def __init__(self, c: Coefficients, origin_s: float, x0: float, w0: float) -> None:
+        self._c = c.valve
+        self._origin_s = origin_s
+        self._before = Lag(float(c.valve[V_TAU_BEFORE_S]))
+        self._force_tail = Lag(float(c.valve[V_FORCE_CREEP_TAU_S]))
+        self._outer = float(c.valve[V_OUTER_CENTRE] + c.valve[V_OUTER_SLOPE] * w0)
+        self._mover: Mover = Stuck(c, x0, w0) if c.valve[_COUPLING].any() else Sliding(c, x0, w0)
+        tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
+        self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c.valve[a] != 0.0]
+
+    def advance(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
+        """Stem on the fine points of the row, shape of `pressure`; the first point is the end of the row before."""
+        force = self._force(time_s, offsets, pressure)
+        stem = self._mover.advance(time_s, offsets, force, self._widening(time_s, offsets))
+        if self._tails:
+            late = sum(share * (lag.follow(time_s, offsets, stem) - stem) for share, lag in self._tails)
+            return stem + late
+        return stem
+
+    def _force(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
+        c = self._c
+        force = self._before.follow(time_s, offsets, pressure)
+        if c[V_FORCE_CREEP] != 0.0:
+            force = force + c[V_FORCE_CREEP] * (self._force_tail.follow(time_s, offsets, force) - force)
+        if c[V_OUTER] > 0.0:
+            inner = np.empty_like(force)
+            plain_play(force, c[V_OUTER], self._outer, inner)
+            self._outer = float(inner[-1])
+            force = inner
+        return force
+
+    def _widening(self, time_s: FloatArray, offsets: np.ndarray) -> FloatArray:
+        """What is added to the half deadband: one number, or one for each fine point [pressure]."""
+        c = self._c
+        if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
+            return np.array([-c[V_OUTER]])
+        t = np.linspace(time_s[0], time_s[1], int(offsets[1]) + 1) - self._origin_s
+        widening: FloatArray = c[V_DRIFT_RATE] * t - c[V_OUTER]
+        if c[V_DRIFT_AMP] != 0.0:
+            widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
+        if c[V_STEP] != 0.0:
+            widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
+        return widening
+
+
+class Sliding:
+    """Play and stem where they do not act on each other."""
+
+    def __init__(self, c: Coefficients, x0: float, w0: float) -> None:
+        v = c.valve
+        self._tables = curve_tables(c)
+        self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
+        self._elements = [w0] * c.spreads.size
+        self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
+        self._after = Lag(float(v[V_TAU_AFTER_S]))
+        self._lags_s, self._rates = v[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], v[[V_RATE_CLOSE, V_RATE_OPEN]]
+        self._low, self._high = max(v[V_LOW], v[V_HARD_LOW]), min(v[V_HIGH], v[V_HARD_HIGH])
+        self._x = x0
+
+    def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
+        """The stem on the fine points of the row."""
+        target = np.zeros(force.size)
+        for k, (spread, weight) in enumerate(self._shares):
+            one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
+            self._elements[k] = float(one[-1])
+            target += weight * one
+        target = self._after.follow(time_s, offsets, target)
+        out = np.empty(force.size)
+        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, out)
+        self._x = float(out[-1])
+        return out
+
+
+_WHOLE = np.ones(1)

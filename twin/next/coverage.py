@@ -1,0 +1,105 @@
+"""The experiment that would show what the records could not: effects that they did not excite, or only if large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from control.experiment import Experiment
+from twin.catalog import effects
+from twin.choose.decide import Decision, DecisionRules
+from twin.diagnosis import EffectTest
+from twin.effect import Form, Scales
+from twin.next.candidates import library
+from twin.next.criterion import Scale, effect_distance, lay_out, response
+from twin.next.limits import Limits
+from twin.next.rivals import Rival, rival_of
+from twin.next.search import value_of
+from twin.plant import Inserted, Plant
+from twin.stages import StageResult
+
+#: Experiments that are looked at in full; the library comes sorted by length.
+_LOOKED_AT = 20
+
+
+@dataclass(frozen=True, slots=True)
+class BlindSpot:
+    """An effect in a form and of a clear size (record units) that the records would not have shown."""
+
+    name: str
+    inserted: Inserted
+
+
+@dataclass(frozen=True, slots=True)
+class Coverage:
+    """An experiment, and the blind spots that it would take away."""
+
+    experiment: Experiment
+    shown: tuple[str, ...]
+    value: float
+
+
+def blind_spots(tests: Sequence[EffectTest], scales: Scales) -> list[BlindSpot]:
+    """Effects that are not testable, or only above the largest of the sizes that a fit starts from."""
+    spots = []
+    for test in tests:
+        form = effects()[test.name].forms[0]
+        inserted = Inserted(test.name, form, _clear(form, scales))
+        main = next((k for k, p in enumerate(form.parameters) if p.name == test.parameter), None)
+        hidden = main is not None and test.detection_limit is not None and _beyond(form, main, test, scales)
+        if not test.testable or hidden:
+            spots.append(BlindSpot(test.name, inserted))
+    return spots
+
+
+def best_coverage(
+    result: StageResult, spots: Sequence[BlindSpot], rules: DecisionRules, limits: Limits
+) -> Coverage | None:
+    """The experiment that shows the most blind spots per minute; None when it would show none."""
+    channels = [(d, rival_of(result, d, d.findings.retuned, "design")) for d in result.decisions]
+    best: Coverage | None = None
+    for experiment in sorted(library(limits), key=lambda e: e.duration_s)[:_LOOKED_AT]:
+        gains = _gains(result, experiment, spots, channels, limits)
+        shown = tuple(spot.name for spot, gain in zip(spots, gains, strict=True) if gain >= rules.evidence)
+        value = value_of(gains, rules.evidence, experiment.duration_s)
+        if shown and (best is None or value > best.value):
+            best = Coverage(experiment, shown, value)
+    return best
+
+
+def _gains(
+    result: StageResult,
+    experiment: Experiment,
+    spots: Sequence[BlindSpot],
+    channels: Sequence[tuple[Decision, Rival]],
+    limits: Limits,
+) -> list[float]:
+    bed = lay_out(experiment, limits.scale)
+    gains = dict.fromkeys((spot.name for spot in spots), 0.0)
+    for decision, design in channels:
+        channel = decision.findings.channel
+        mine = [spot for spot in spots if effects()[spot.name].stage in channel.stages]
+        if not mine:
+            continue
+        period_s = sum(r.period_s for r in result.case.recordings) / len(result.case.recordings)
+        excess = max(decision.findings.retuned.mse, 1.0)
+        scale = Scale(channel.name, channel.sigma, max(decision.findings.phi * period_s, 1e-3), excess)
+        hidden, plain = response(design, bed, scale), design.plant()
+        for spot in mine:
+            changed = Plant(plain.design, (*plain.inserted, spot.inserted))
+            gains[spot.name] = effect_distance(design, changed, hidden, bed, scale).gain
+    return [gains[spot.name] for spot in spots]
+
+
+def _clear(form: Form, scales: Scales) -> tuple[float, ...]:
+    """Values of a clear effect: the largest start of each size."""
+    return tuple(
+        (max(p.starts, key=lambda s: abs(s - p.neutral)) if p.size else p.starts[0]) * scales.factor(p.kind)
+        for p in form.parameters
+    )
+
+
+def _beyond(form: Form, main: int, test: EffectTest, scales: Scales) -> bool:
+    p = form.parameters[main]
+    clear = max(abs(s - p.neutral) for s in p.starts) * scales.factor(p.kind)
+    return test.detection_limit is not None and test.detection_limit > clear
