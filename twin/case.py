@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -22,6 +22,15 @@ _REFERENCE_SPAN_PSI = 0.5625 / 0.19
 _REFERENCE_TRAVEL_IN = 0.5625
 #: Noise is never believed to be below this share of the span: numbers in a file have finite digits.
 _LEAST_NOISE = 1e-5
+
+
+@dataclass(frozen=True, slots=True)
+class Margin:
+    """RMS by which a healthy machine is known to depart from its design: no gap means no more than this on top of the
+    noise. In the recordings' units; measured on a healthy twin or golden runs, 0 where the design is believed."""
+
+    position: float = 0.0
+    pressure: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,6 +76,17 @@ def make_case(
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)
+
+
+def widened(case: Case, margin: Margin) -> tuple[Case, float]:
+    """The case with the margin as part of the noise, and the largest share of the margin in a channel's variance."""
+    sigma_y = float(np.hypot(case.sigma_y, margin.position))
+    shares = [margin.position / sigma_y]
+    sigma_p = case.sigma_p
+    if sigma_p is not None:
+        sigma_p = float(np.hypot(sigma_p, margin.pressure))
+        shares.append(margin.pressure / sigma_p)
+    return replace(case, sigma_y=sigma_y, sigma_p=sigma_p), max(shares) ** 2
 
 
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None) -> Trial:

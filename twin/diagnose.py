@@ -10,7 +10,7 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import DataNote, FloatArray, Recording
-from twin.case import Case, make_case
+from twin.case import Case, Margin, make_case, widened
 from twin.catalog import effects
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
@@ -37,12 +37,16 @@ Progress = Callable[[str, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """Everything that can be chosen about a diagnosis; the defaults are the calibrated ones."""
+    """Everything that can be chosen about a diagnosis; the defaults are the calibrated ones.
+
+    With a `margin` a cause must explain more than the margin does.
+    """
 
     search: SearchRules = field(default_factory=SearchRules)
     rules: DecisionRules = field(default_factory=DecisionRules)
     weights: Weights = field(default_factory=Weights)
     seed: int = 0
+    margin: Margin = field(default_factory=Margin)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +82,8 @@ def diagnose(
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
+    case, share = widened(case, settings.margin)
+    settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
     result = judge(case, settings.search, settings.rules, progress)
     retuned = _retuned(case)
     where = whereabouts(case, result, settings.seed)
