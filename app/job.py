@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
@@ -14,13 +14,21 @@ from app.session import Session
 
 if TYPE_CHECKING:
     from control.drive import Drive
-    from control.loop import Outcome
+    from control.loop import Outcome, Sink
     from control.plan import Plan
     from logs.stream import RunView
     from logs.writer import RunWriter
 
 
 WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """Something that runs beside the bench and adds `columns` (name to unit) to every row: a sink around the sinks."""
+
+    columns: Mapping[str, str]
+    around: Callable[[Sequence[Sink]], Sink]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +40,7 @@ class Job:
     make_drive: Callable[[float], Drive]  # from the command in force at the start
     closed_loop: bool = False
     about: Mapping[str, object] = field(default_factory=dict)
+    beside: Beside | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,6 +68,8 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     info = session.bench.info
     _check_watchdogs(session, job.plan.period_s)
     columns = columns_of(info, closed_loop=job.closed_loop, aux_units=session.aux_units)
+    if job.beside is not None:
+        columns |= job.beside.columns
     start = _start(session, job)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
@@ -72,7 +83,9 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
         notes = KeyboardNotes()
         stack.callback(notes.close)
         hooks = Hooks(progress=display.show, notes=notes, check=stop.check)
-        sinks = (record,) if view is None else (record, view)
+        sinks: tuple[Sink, ...] = (record,) if view is None else (record, view)
+        if job.beside is not None:
+            sinks = (job.beside.around(sinks),)
         loop = Loop(session.bench, session.clock, sinks, hooks, aux=tuple(session.aux_units))
         begun = session.command_in_force
         try:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 @click.option("--hold", "hold_s", type=float, default=60.0, show_default=True, metavar="S", help="Time on each [s].")
 @click.option("--design", type=click.Path(path_type=Path), help="Design model file.  [default: the thesis's numbers]")
 @click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a setting of the controller.")
+@click.option("--twin", metavar="MODEL.toml", type=click.Path(path_type=Path), help="Run this model beside the bench.")
 @click.option("--period", "period_s", type=float, default=0.1, show_default=True, metavar="S", help="Tick [s].")
 @bench_options
 @sealed_option
@@ -82,14 +83,18 @@ def _run(
     operator: str,
     live: bool,
     seed: int,
+    twin: Path | None,
     **bench: Any,
 ) -> None:
     from app.job import perform
+    from app.twin_beside import with_twin
     from control.tracking import judge_targets
     from logs.run import read_run
 
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, plan, controller, settings, model, {"note": note, "operator": operator, "seed": seed})
+        if twin is not None:
+            job = with_twin(job, twin, session.bench.info.command_unit)
         _announce(session, plan, controller, as_json)
         done = perform(session, job, out=out, live=live, title=controller)
         travel_in = session.profile.travel_in
