@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import random
 import time
 from collections import Counter, defaultdict
@@ -20,7 +21,7 @@ from dataclasses import asdict
 from multiprocessing import get_context
 from pathlib import Path
 
-from app.blind.designs import baseline
+from app.blind.designs import baseline, margin
 from app.blind.excite import commands, open_loop
 from app.blind.features import decision_features
 from app.blind.mark import mark
@@ -102,7 +103,8 @@ def solve(number: int, label: Label, share: float = 1.0) -> dict[str, object]:
     recording = Recording(f"case-{number}", time_s, command, position, pressure)
     design = baseline(label.family)
     began = time.perf_counter()
-    outcome = diagnose([recording], design, inserted_from(design), Settings(search=SearchRules(threads=1)))
+    settings = Settings(search=SearchRules(threads=1), margin=margin(label.family))
+    outcome = diagnose([recording], design, inserted_from(design), settings)
     seconds = time.perf_counter() - began
     said = outcome.diagnosis.to_json()
     force = strength(label, time_s, command)
@@ -123,6 +125,8 @@ def solve(number: int, label: Label, share: float = 1.0) -> dict[str, object]:
 
 def run(todo: list[tuple[int, Label]], out: Path, processes: int, share: float) -> None:
     """Solves what is to do, a line as soon as it is there; stop it with Ctrl-C and start it again."""
+    for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+        os.environ.setdefault(name, "1")  # read by the workers when they import numpy; their threads only collide
     with out.open("a", encoding="utf-8") as file, ProcessPoolExecutor(processes, get_context("spawn")) as pool:
         jobs = {pool.submit(solve, number, label, share): number for number, label in todo}
         try:

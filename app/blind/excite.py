@@ -54,8 +54,8 @@ def closed_loop(seed: int) -> Plan:
 def commands(plan: Plan, safe: float = 0.0) -> tuple[FloatArray, FloatArray]:
     """Time and command of a record of the plan, each of shape (n,): row k has the command that tick k-1 sent."""
     sent = [value for step in (*plan.lead, *plan.steps) for value in _values(step, plan.period_s)]
-    command = np.array([safe, *sent[:-1]])
-    return np.arange(command.size) * plan.period_s, command
+    command = np.array([safe, *sent[:-1]], dtype=np.float64)
+    return np.arange(command.size, dtype=np.float64) * plan.period_s, command
 
 
 def _values(step: Step, period_s: float) -> Sequence[float]:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from twin.choose.score import score
-
 if TYPE_CHECKING:
     from twin.choose.decide import Decision
+    from twin.choose.search import Findings
     from twin.diagnose import Outcome
     from twin.fit.fitting import Fit
 
@@ -20,30 +19,34 @@ def decision_features(outcome: Outcome) -> dict[str, object]:
 
 
 def _of(decision: Decision) -> dict[str, object]:
-    findings = decision.findings
-    rows, phi = findings.channel.rows, findings.phi
-    own = score(decision.accepted, rows, phi)
+    findings, accepted = decision.findings, decision.accepted
     ranked = findings.scored()
-    size = len(decision.accepted.space.causes)
-    rivals = [s for s, f in ranked if len(f.space.causes) == size and f is not decision.accepted]
+    own = findings.score(accepted)
+    size = len(accepted.names)
+    rivals = [score for score, fit in ranked if len(fit.names) == size and fit is not accepted]
     return {
         "none_mse": findings.none.mse,
         "retuned_mse": findings.retuned.mse,
-        "accepted_mse": decision.accepted.mse,
-        "accepted": list(decision.accepted.names),
+        "accepted_mse": accepted.mse,
+        "accepted": list(accepted.names),
         "explained": decision.explained,
         "gap": decision.gap,
         "rest": decision.rest,
-        "rows": rows,
-        "phi": phi,
+        "rows": findings.channel.rows,
+        "phi": findings.phi,
         "score": own,
-        "score_none": score(findings.none, rows, phi),
+        "score_none": findings.score(findings.none),
         "score_gap_to_rival": own - rivals[0] if rivals else None,
-        "best": [[list(f.names), f.mse, s] for s, f in ranked[:_KEPT]],
-        "best_by_size": [[list(f.names), f.mse, score(f, rows, phi)] for f in _by_size(decision)],
+        "best": [_line(fit, score) for score, fit in ranked[:_KEPT]],
+        "best_by_size": [_line(fit, findings.score(fit)) for fit in _by_size(findings)],
     }
 
 
-def _by_size(decision: Decision) -> list[Fit]:
-    found = [decision.findings.best_of_size(size) for size in (1, 2, 3)]
-    return [f for f in found if f is not None]
+def _line(fit: Fit, score: float) -> dict[str, object]:
+    return {"names": list(fit.names), "mse": fit.mse, "score": score}
+
+
+def _by_size(findings: Findings) -> list[Fit]:
+    """The best hypothesis of each size."""
+    found = [findings.best_of_size(size) for size in (1, 2, 3)]
+    return [fit for fit in found if fit is not None]

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from app.blind.designs import margin
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
 
@@ -14,21 +15,25 @@ if TYPE_CHECKING:
     from logs.recording import FloatArray
     from sim_device.sealed import Label
 
-#: Edges of the strata, in units of the noise of a position reading.
+#: Edges of the strata, in units of the floor.
 EDGES = (1.0, 3.0, 10.0)
 STRATA = ("below 1", "1 to 3", "3 to 10", "above 10")
 
 
 @dataclass(frozen=True, slots=True)
 class Strength:
-    """`gap_in`: RMS by which the faults move the position reading; `floor_in`: RMS of that reading's noise [in]."""
+    """`gap_in`: RMS by which the faults move the position reading. `noise_in`: RMS of that reading's noise.
+
+    `floor_in`: the noise together with the margin by which the healthy machine departs from its baseline. All in in.
+    """
 
     gap_in: float
+    noise_in: float
     floor_in: float
 
     @property
     def ratio(self) -> float:
-        """Fault over noise; 0 for a healthy valve."""
+        """Fault over floor; 0 for a healthy valve."""
         return self.gap_in / self.floor_in
 
 
@@ -45,8 +50,9 @@ def strength(label: Label, time_s: FloatArray, command: FloatArray) -> Strength:
         return record(physics, time_s, command)[1]
 
     healthy = read(0.0, {})
-    floor = _rms(read(1.0, {}) - healthy)
-    return Strength(_rms(read(0.0, effects) - healthy) if effects else 0.0, floor)
+    noise = _rms(read(1.0, {}) - healthy)
+    gap = _rms(read(0.0, effects) - healthy) if effects else 0.0
+    return Strength(gap, noise, float(np.hypot(noise, margin(label.family).position)))
 
 
 def stratum(ratio: float) -> str:

@@ -1,0 +1,83 @@
+"""The model of the healthy reference valve that its blind trials are held against: `python bench/blind_baseline.py`.
+
+It plays the test sequence to a healthy valve, fits the design's numbers stage by stage with the friction in motion,
+writes `app/blind/baselines/reference.toml`, and measures what this model leaves on seeds that it has not seen: "nothing
+is wrong" in a blind trial means nothing beyond that margin (`reference_margin.toml`). Run it anew whenever the physics
+of the reference plant change.
+"""
+
+from __future__ import annotations
+
+import argparse
+from dataclasses import replace
+
+import numpy as np
+
+from app.blind.designs import FOLDER
+from app.blind.excite import commands, open_loop
+from control.design import DesignModel, save_design
+from control.identify import identify
+from logs.recording import Recording
+from sim_device.physics.catalog import make_physics
+from sim_device.physics.offline import record
+from twin.case import make_case
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.insert import inserted_from
+from twin.plant import effect_tables
+from twin.simulate import simulate_recording
+from twin.stages import combined, judge
+
+FAMILY = "reference"
+SEED, FRESH = 101, (102, 103, 104)
+COMMENT = "The healthy reference valve as a design model, friction in motion; made by bench/blind_baseline.py."
+MARGIN = """# RMS by which the healthy reference valve departs from reference.toml, on seeds that the fit has not seen and
+# without noise; made by bench/blind_baseline.py. A blind trial finds "no gap" when nothing stands out beyond this.
+pressure_psi = {pressure}
+position_in = {position}
+"""
+
+
+def healthy(seed: int, noise: float = 1.0) -> Recording:
+    """A healthy valve through the test sequence."""
+    time_s, command = commands(open_loop(seed))
+    pressure, position = record(make_physics(FAMILY, seed, noise=noise), time_s, command)
+    return Recording(f"healthy, seed {seed}", time_s, command, position, pressure)
+
+
+def fitted(recording: Recording) -> DesignModel:
+    """Identified, then refined with the friction in motion: the converter by its pressure, the valve behind it."""
+    design = replace(identify([recording]).design, effects={"friction_in_motion": {"form": "full"}})
+    for _ in range(2):
+        case = make_case([recording], design, inserted_from(design))
+        result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
+        plant = combined(case.base, [decision.findings.retuned for decision in result.decisions])
+        design = replace(plant.design, effects=effect_tables(plant.inserted))
+    return design
+
+
+def left(design: DesignModel, seed: int) -> np.ndarray:
+    """RMS of the noise-free pressure [psi] and position [in] that the model misses, after the first seconds."""
+    recording = healthy(seed, noise=0.0)
+    assert recording.pressure is not None
+    pressure, position = simulate_recording(design, recording)
+    errors = np.stack([recording.pressure - pressure, recording.position - position])
+    return np.sqrt(np.mean(errors[:, 50:] ** 2, axis=1))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.parse_args()
+    design = fitted(healthy(SEED))
+    misses = np.array([left(design, seed) for seed in FRESH])
+    pressure, position = np.sqrt(np.mean(misses**2, axis=0))
+    print("missed on fresh seeds [psi, in]:", misses.round(5).tolist())
+    FOLDER.mkdir(exist_ok=True)
+    save_design(design, FOLDER / f"{FAMILY}.toml", COMMENT)
+    text = MARGIN.format(pressure=float(f"{pressure:.3g}"), position=float(f"{position:.3g}"))
+    (FOLDER / f"{FAMILY}_margin.toml").write_text(text, encoding="utf-8")
+    print((FOLDER / f"{FAMILY}.toml").read_text(encoding="utf-8"), text, sep="\n")
+
+
+if __name__ == "__main__":
+    main()
