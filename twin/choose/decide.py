@@ -25,7 +25,9 @@ class DecisionRules:
     share: float = 0.02
     thorough: float = 0.55
     large_share: float = 0.2
-    unexplained: float = 0.5
+    unexplained: float = 0.2
+    plain: float = 0.05
+    plain_share: float = 0.005
     quiet: float = 2.0
 
 
@@ -56,6 +58,8 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         # A pair may be needed before either of its members shows, so look two steps ahead as well.
         bigger = [findings.best_of_size(size + k) for k in (1, 2)]
         better = next((f for f in bigger if f is not None and _worth(findings, accepted, f, rules, floor)), None)
+        if better is not None and accepted is findings.none:
+            better = plainer(findings, better, rules)
         if better is None:
             break
         accepted = better
@@ -65,6 +69,16 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     explained = size > 0 and rest < rules.unexplained
     gap = explained or findings.none.mse > rules.quiet * floor
     return Decision(findings, accepted, explained, gap, rest)
+
+
+def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+    """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins."""
+    if size_of(fit) > 1:
+        return fit
+    slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
+    alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
+    near = [f for f in alone if f.mse <= fit.mse + slack]
+    return max(near, key=findings.score) if near else fit
 
 
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:

@@ -49,10 +49,29 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
 
 
 def _comparable(decision: Decision) -> list[Fit]:
-    """Hypotheses no larger than the accepted one: what a further cause would have gained has been weighed already."""
-    size = size_of(decision.accepted)
+    """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed.
+
+    Where wrong numbers were accepted, an effect is a rival only if it does without moving a number as far.
+    """
+    accepted = decision.accepted
+    size = size_of(accepted)
     everything = (decision.findings.none, *decision.findings.fits)
-    return [f for f in everything if size_of(f) <= size or f is decision.accepted]
+    fits = [f for f in everything if size_of(f) <= size and f is not accepted]
+    if accepted.names and all(c.effect is None for c in accepted.space.causes):
+        fits = [f for f in fits if not _leans_on(f, accepted)]
+    return [*fits, accepted]
+
+
+def _leans_on(fit: Fit, accepted: Fit) -> bool:
+    """Whether an effect hypothesis moves an accused number at least half as far as the accusation does."""
+    if all(c.effect is None for c in fit.space.causes):
+        return False
+    for k, name in enumerate(accepted.space.numbers):
+        if name in fit.space.numbers:
+            moved = fit.z[fit.space.numbers.index(name)]
+            if abs(moved) > 0.5 * abs(accepted.z[k]) and moved * accepted.z[k] > 0.0:
+                return True
+    return False
 
 
 def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: Weights) -> tuple[tuple[str, ...], ...]:

@@ -61,7 +61,7 @@ EFFECT = Effect(
         Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
-    odds=0.3,  # most benches are dry
+    odds=0.05,  # most benches are dry
     absorbs=("compliance", "offset"),
     same_as={"throttling": ("nonlinear_spring",), "near_seat": ("nonlinear_spring",), "at_seat": ("nonlinear_spring",)},
 )
