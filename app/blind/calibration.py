@@ -1,0 +1,58 @@
+"""Are the probabilities honest? Of the causes named with 0.9, nine in ten should be right."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from app.blind.interval import bootstrap, wilson
+
+Claim = tuple[float, bool]  # probability said, and whether the cause was true
+
+EDGES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
+
+
+def calibration(trials: Sequence[Sequence[Claim]]) -> dict[str, Any]:
+    """Curve, expected calibration error with its bootstrap interval, Brier score; `trials` holds each trial's claims.
+
+    Trials are resampled and not claims, because the claims of one trial stand and fall together.
+    """
+    claims = [claim for trial in trials for claim in trial]
+    if not claims:
+        return {"claims": 0, "ece": None, "ci95": None, "brier": None, "curve": []}
+    low, high = bootstrap(trials, lambda some: error([c for trial in some for c in trial]))
+    brier = float(np.mean([(p - right) ** 2 for p, right in claims]))
+    return {"claims": len(claims), "ece": error(claims), "ci95": [low, high], "brier": brier, "curve": curve(claims)}
+
+
+def error(claims: Sequence[Claim]) -> float:
+    """Mean distance of what was said from what was true, weighted by the number of claims in each bin.
+
+    NaN without claims. Source: Naeini, Cooper, Hauskrecht, AAAI 2015.
+    """
+    if not claims:
+        return float("nan")
+    return sum(b["claims"] * abs(b["said"] - b["right"]) for b in curve(claims)) / len(claims)
+
+
+def curve(claims: Sequence[Claim]) -> list[dict[str, Any]]:
+    """Per bin that holds claims: the mean probability said, the share that was right, and its interval."""
+    bins = []
+    which = np.clip(np.searchsorted(EDGES, [p for p, _ in claims], side="right") - 1, 0, len(EDGES) - 2)
+    for number in range(len(EDGES) - 1):
+        inside = [claim for claim, k in zip(claims, which, strict=True) if k == number]
+        if inside:
+            hits = sum(right for _, right in inside)
+            bins.append(
+                {
+                    "from": EDGES[number],
+                    "to": EDGES[number + 1],
+                    "claims": len(inside),
+                    "said": float(np.mean([p for p, _ in inside])),
+                    "right": hits / len(inside),
+                    "ci95": list(wilson(hits, len(inside))),
+                }
+            )
+    return bins

@@ -1,0 +1,48 @@
+"""Intervals for counts and for anything else: a rate without one is an anecdote."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any, TypeVar
+
+import numpy as np
+
+T = TypeVar("T")
+
+_Z = 1.959964
+_REPLICATES = 1000
+
+
+def wilson(hits: int, of: int) -> tuple[float, float]:
+    """95 % interval of a proportion. Source: Wilson, J. Am. Stat. Assoc. 22 (1927) 209."""
+    if of == 0:
+        return 0.0, 1.0
+    share, extra = hits / of, _Z**2 / of
+    middle = (share + extra / 2.0) / (1.0 + extra)
+    half = _Z / (1.0 + extra) * np.sqrt(share * (1.0 - share) / of + extra / (4.0 * of))
+    return max(0.0, float(middle - half)), min(1.0, float(middle + half))
+
+
+def rate(marks: Sequence[bool]) -> dict[str, Any]:
+    """Hits, trials, their share (None without trials) and its interval."""
+    hits, of = sum(marks), len(marks)
+    return {"hits": hits, "of": of, "share": hits / of if of else None, "ci95": list(wilson(hits, of))}
+
+
+def bootstrap(items: Sequence[T], statistic: Callable[[Sequence[T]], float], seed: int = 0) -> tuple[float, float]:
+    """95 % percentile interval of a statistic of independent items, by resampling them. Source: Efron (1979)."""
+    chance = np.random.default_rng(seed)
+    values = [statistic([items[k] for k in chance.integers(0, len(items), len(items))]) for _ in range(_REPLICATES)]
+    known = np.array([v for v in values if np.isfinite(v)])
+    if not known.size:
+        return float("nan"), float("nan")
+    low, high = np.percentile(known, [2.5, 97.5])
+    return float(low), float(high)
+
+
+def median(values: Sequence[float]) -> dict[str, Any]:
+    """Median with its interval; None without values."""
+    if not values:
+        return {"median": None, "of": 0, "ci95": None}
+    low, high = bootstrap(values, lambda v: float(np.median(v)))
+    return {"median": float(np.median(values)), "of": len(values), "ci95": [low, high]}

@@ -1,0 +1,93 @@
+"""Many trials in a few processes, one JSON line each as soon as it is done; stopped at any time and gone on with."""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from pathlib import Path
+from typing import Any
+
+from app.blind.trial import Order, run_trial
+from hal.errors import BadInput
+
+Line = dict[str, Any]
+RESULTS = "trials.jsonl"
+_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+def read_lines(out: Path) -> list[Line]:
+    """The results that are there, by trial number; a line cut off by a crash is left out and its trial redone.
+
+    Raises: `BadInput` when a line in the middle of the file is damaged.
+    """
+    path = out / RESULTS
+    if not path.exists():
+        return []
+    lines: dict[int, Line] = {}
+    texts = path.read_text(encoding="utf-8").splitlines()
+    for row, text in enumerate(texts, start=1):
+        try:
+            line = json.loads(text)
+            lines[line["trial"]] = line
+        except (ValueError, KeyError, TypeError) as error:
+            if row < len(texts):
+                raise BadInput(
+                    f"{path}: line {row} is no trial ({error}); remove it and that trial is redone"
+                ) from None
+    return [lines[number] for number in sorted(lines)]
+
+
+def run_all(
+    todo: Sequence[Order], out: Path, processes: int = 2, trial: Callable[[Order], Line] = run_trial
+) -> Iterator[Line]:
+    """Runs the trials, appends every result to OUT/trials.jsonl and yields it. Leave it early and the workers end.
+
+    A trial that fails is a result with an `error`, because what breaks the program is a finding about it too.
+    """
+    for name in _THREADS:
+        os.environ.setdefault(name, "1")  # read by a worker when it imports numpy
+    _cut_last_line(out / RESULTS)
+    context = multiprocessing.get_context("spawn")
+    with (out / RESULTS).open("a", encoding="utf-8") as file:
+        pool = ProcessPoolExecutor(processes, context, initializer=_deaf)
+        try:
+            jobs = {pool.submit(trial, order): order for order in todo}
+            for line in _finished(jobs):
+                file.write(json.dumps(line) + "\n")
+                file.flush()
+                yield line
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+            for child in multiprocessing.active_children():
+                child.terminate()
+
+
+def _finished(jobs: dict[Future[Line], Order]) -> Iterator[Line]:
+    left = set(jobs)
+    while left:
+        done, left = wait(left, return_when=FIRST_COMPLETED)
+        for job in done:
+            error = job.exception()
+            if error is None:
+                yield job.result()
+            else:
+                yield {"trial": jobs[job].number, "seal": jobs[job].seal, "error": f"{type(error).__name__}: {error}"}
+
+
+def _deaf() -> None:
+    """A worker does not hear Ctrl-C: its master does, and ends it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+def _cut_last_line(path: Path) -> None:
+    """Takes away a line that a crash cut off, so that the next result starts on its own."""
+    if path.exists():
+        whole = path.read_bytes()
+        end = whole.rfind(b"\n") + 1
+        if end < len(whole):
+            with path.open("r+b") as file:
+                file.truncate(end)
