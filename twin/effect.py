@@ -116,15 +116,21 @@ class Coefficients:
 
 
 Apply = Callable[[Coefficients, Sequence[float]], None]
+StartsFor = Callable[[FloatArray, FloatArray, Scales], Sequence[tuple[float, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
-    """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units."""
+    """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units.
+
+    `starts_for(time_s, reading, scales)` gives the values (in record units) that a fit to this record tries first,
+    where the parameters' own starts would be too many or too coarse.
+    """
 
     name: str
     parameters: tuple[Parameter, ...]
     apply: Apply
+    starts_for: StartsFor | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,9 @@ V_HARD_HIGH = 27
 V_STRIBECK = 28  # friction at rest above friction in motion, falling with speed [pressure]
 V_STRIBECK_SPEED = 29  # speed at which 1/e of it is left [position/s]
 V_HELD = 30  # distance between target and stem up to which a stem at rest stays [position]
-V_COUNT = 31
+V_TARGET_STICKS = 31  # 1: what sticks is the target, when it slows down; the stem follows its lag
+V_AGING_S = 32  # time at rest after which 1 - 1/e of the breakaway is there; 0: at once [s]
+V_COUNT = 33
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -129,7 +129,7 @@ class Searcher:
 
         def one(causes: tuple[Cause, ...]) -> Fit:
             space = make_space(self.base, causes, self._numbers(causes), self.scales)
-            return fit(self.channel, space, starts_of(space, known), rounds=rounds)
+            return fit(self.channel, space, starts_of(space, known, self.channel.trials[0].recording), rounds=rounds)
 
         with ThreadPoolExecutor(self.rules.threads) as pool:
             fits = []

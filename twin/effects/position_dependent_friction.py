@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import bow, bump, detrended
 
 #: Length of the raised end, as a fraction of travel.
@@ -25,6 +25,21 @@ def _height(doc: str) -> Parameter:
         doc=doc,
     )
 
+
+def _knot(at: float) -> Parameter:
+    return Parameter(
+        name=f"at_{round(100 * at)}",
+        kind="pressure",
+        lower=-1.45,
+        upper=2.5,
+        starts=(-0.02, 0.02),
+        scale=0.1,
+        doc=f"extra half deadband at {round(100 * at)} % of travel, straight between these points",
+    )
+
+
+#: Points of the travel at which the profile is free.
+KNOTS = tuple(k / 6 for k in range(7))
 
 _CENTRE = Parameter(
     name="centre",
@@ -71,17 +86,29 @@ def _closed_end(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * np.exp(-(1.0 - c.xi) / END))
 
 
+def _profile(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, np.interp(c.xi, KNOTS, values))
+
+
+def _profile_starts(_time_s: FloatArray, _reading: FloatArray, scales: Scales) -> list[tuple[float, ...]]:
+    """Small bumps in turn: from there a smooth response is fitted in any direction."""
+    size = 0.01 * scales.pressure
+    return [tuple(size if k % 2 == odd else -size for k in range(len(KNOTS))) for odd in (0, 1)]
+
+
 EFFECT = Effect(
     name="position_dependent_friction",
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
-    equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width)",
+    equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
+    "or straight between points of the travel",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _spot),
         Form("bow", (_height("extra half deadband at mid travel against the ends, 1.5 times"),), _bow),
         Form("open_end", (_height("extra half deadband at fully open"),), _open_end),
         Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),
+        Form("profile", tuple(_knot(at) for at in KNOTS), _profile, _profile_starts),
     ),
     twins=("stiction", "spring_asymmetry"),
     absorbs=("deadband",),

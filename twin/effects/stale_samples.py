@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.refresh import refreshes
 from twin.slots import S_HOLD_PHASE_S, S_HOLD_S
 
 _PERIOD = Parameter(
@@ -35,12 +39,22 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_HOLD_PHASE_S] = values[0] * values[1]
 
 
+def _seen(time_s: FloatArray, reading: FloatArray, _scales: Scales) -> list[tuple[float, ...]]:
+    """The periods and phases that the reading's lateness suggests; between two rows any phase is as good."""
+    starts: list[tuple[float, ...]] = []
+    row_s = float(np.median(np.diff(time_s)))
+    for one in refreshes(time_s, reading):
+        shifts = [k * row_s / one.period_s / 4.0 for k in (-2, -1, 0, 1, 2)]
+        starts += [(one.period_s, (one.phase + shift) % 1.0) for shift in shifts]
+    return starts
+
+
 EFFECT = Effect(
     name="stale_samples",
     stage="sensor",
     claim="The DAQ refreshes the reading more slowly than it is polled.",
     equations="y(t) = x(n period + phase) until the next refresh",
     source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997), ch. 7 (sample and hold)",
-    forms=(Form("periodic", (_PERIOD, _PHASE), _apply),),
+    forms=(Form("periodic", (_PERIOD, _PHASE), _apply, _seen),),
     twins=("sensor_lag",),
 )

@@ -5,14 +5,26 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import FOREVER, V_BREAKAWAY, V_HELD, V_STICK_SPEED, V_STRIBECK, V_STRIBECK_SPEED
+from twin.slots import (
+    FOREVER,
+    V_AGING_S,
+    V_BREAKAWAY,
+    V_HELD,
+    V_STICK_SPEED,
+    V_STRIBECK,
+    V_STRIBECK_SPEED,
+    V_TARGET_STICKS,
+)
+
+#: Speed of the target below which it rests where friction grows with the time at rest, as a share of the rate limit.
+_REST = 0.005
 
 _BREAKAWAY = Parameter(
     name="breakaway",
     kind="pressure",
     lower=0.0,
     upper=4.0,
-    starts=(0.1, 0.2, 0.4, 0.8, 1.6),
+    starts=(0.03, 0.1, 0.2, 0.4, 0.8, 1.6),
     scale=0.6,
     doc="pressure above the sliding curve that is needed to start",
     smooth=False,
@@ -29,8 +41,29 @@ _STICK_SPEED = Parameter(
     smooth=False,
     size=False,
 )
-
-
+_TARGET_SPEED = Parameter(
+    name="stick_speed",
+    kind="position_rate",
+    lower=1e-5,
+    upper=0.1,
+    starts=(5e-4, 4e-3, 1.5e-2, 3e-2),
+    scale=4e-3,
+    doc="below this speed the target of the stem sticks again",
+    neutral=2e-3,
+    smooth=False,
+    size=False,
+)
+_AGING = Parameter(
+    name="aging",
+    kind="time",
+    lower=0.05,
+    upper=100.0,
+    starts=(1.0, 5.0),
+    scale=5.0,
+    doc="time at rest after which 63 % of the breakaway is there",
+    neutral=5.0,
+    size=False,
+)
 _FALL_SPEED = Parameter(
     name="fall_speed",
     kind="position_rate",
@@ -47,6 +80,18 @@ _FALL_SPEED = Parameter(
 def _slip_until_slow(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_BREAKAWAY] = values[0]
     c.valve[V_STICK_SPEED] = values[1]
+
+
+def _target_sticks(c: Coefficients, values: Sequence[float]) -> None:
+    _slip_until_slow(c, values)
+    c.valve[V_TARGET_STICKS] = 1.0
+
+
+def _grows_at_rest(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_BREAKAWAY] = values[0]
+    c.valve[V_AGING_S] = values[1]
+    c.valve[V_STICK_SPEED] = _REST * c.design.rate_limit
+    c.valve[V_TARGET_STICKS] = 1.0
 
 
 def _one_jump(c: Coefficients, values: Sequence[float]) -> None:
@@ -68,12 +113,16 @@ EFFECT = Effect(
     name="stiction",
     stage="actuator",
     claim="The stem sticks until the pressure exceeds sliding friction by the breakaway, then slips.",
-    equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed; "
+    equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed, and "
+    "has to break away the other way in any case; target_sticks: the target w itself sticks below the stick speed, and "
+    "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
     "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503; "
-    "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck)",
+    "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck, growth at rest)",
     forms=(
         Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
+        Form("target_sticks", (_BREAKAWAY, _TARGET_SPEED), _target_sticks),
+        Form("grows_at_rest", (_BREAKAWAY, _AGING), _grows_at_rest),
         Form("one_jump", (_BREAKAWAY,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),

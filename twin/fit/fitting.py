@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.fit.channel import Channel
 from twin.fit.least_squares import Minimum, descend, minimise
 from twin.fit.space import Space, form_starts
@@ -91,18 +91,18 @@ def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray
     return Fit(space, best.z, float(data @ data) / max(rows, 1.0), prior, data, best.normal, used)
 
 
-def starts_of(space: Space, known: Sequence[Fit] = ()) -> list[FloatArray]:
+def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None = None) -> list[FloatArray]:
     """Start vectors of a space: design numbers at their nominals, effects at each of their starts.
 
     Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
-    the design numbers start as in the first of them.
+    the design numbers start as in the first of them. A form may read its starts from the `record`.
     """
     heads = [np.zeros(len(space.numbers))]
     for cause in space.causes:
         if cause.form is None:
             continue
         block = next((b for f in known if (b := _known_block(f, cause.name, cause.form.name)) is not None), None)
-        options = form_starts(cause.form) if block is None else [block]
+        options = form_starts(cause.form, space.scales, record) if block is None else [block]
         heads = [np.concatenate([head, option]) for head in heads for option in options]
     if known:
         for head in heads:

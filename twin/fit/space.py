@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from control.design import DesignModel
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.effect import Effect, Form, Parameter, Scales
 from twin.fit.numbers import NUMBERS, nominal, reference, retuned
 from twin.plant import Inserted, Plant
@@ -23,6 +23,7 @@ NUISANCE_SPREAD = 0.01
 ACCUSED_SPREAD = 0.5
 #: ... and of one that an effect of the hypothesis gives another meaning.
 ABSORBED_SPREAD = 0.1
+REFERENCE = Scales()
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,16 +128,26 @@ def _form_unknowns(cause: str, form: Form, scales: Scales) -> list[Unknown]:
     return unknowns
 
 
-def form_starts(form: Form) -> list[FloatArray]:
+def form_starts(form: Form, scales: Scales = REFERENCE, record: Recording | None = None) -> list[FloatArray]:
     """Start vectors of a form's own unknowns in z: every combination of its parameters' starts.
 
-    A parameter to which the response jumps is started densely: its valleys are narrow.
+    A parameter to which the response jumps is started densely: its valleys are narrow. A form that reads its starts
+    from the `record` is asked first.
     """
+    if form.starts_for is not None and record is not None:
+        own = form.starts_for(record.time_s, record.position, scales)
+        if own:
+            return [_in_z(form, values, scales) for values in own]
     starts: list[list[float]] = [[]]
     for p in form.parameters:
         values = [(s - p.neutral) / p.scale for s in (p.starts if p.smooth else _dense(p))]
         starts = [[*head, v] for head in starts for v in values]
     return [np.array(s) for s in starts]
+
+
+def _in_z(form: Form, values: Sequence[float], scales: Scales) -> FloatArray:
+    pairs = zip(form.parameters, values, strict=True)
+    return np.array([(v / scales.factor(p.kind) - p.neutral) / p.scale for p, v in pairs])
 
 
 def _dense(p: Parameter) -> list[float]:

@@ -12,6 +12,7 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.slots import (
     FOREVER,
+    V_AGING_S,
     V_BREAKAWAY,
     V_HELD,
     V_IN_MOTION,
@@ -20,6 +21,7 @@ from twin.slots import (
     V_STICK_SPEED,
     V_STRIBECK,
     V_STRIBECK_SPEED,
+    V_TARGET_STICKS,
     V_TAU_AFTER_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
@@ -29,6 +31,8 @@ from twin.slots import (
 #: First pressure, step, closing and opening curve; and the spreads and weights of the elements.
 Tables = tuple[float, float, FloatArray, FloatArray]
 Plays = tuple[FloatArray, FloatArray]
+#: Stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck [s].
+State = tuple[float, float, float, bool, float, float, float, float]
 
 _SAME = 1e-9
 
@@ -71,35 +75,54 @@ def _jumps(e: float, free: float, held: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _held(
+    q: float, band: float, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
+) -> tuple[float, float]:
+    """Between which two positions an element stays at pressure `q` that needs `extra` (closing, opening) to start."""
+    p_first, p_step, closing, opening = tables
+    bottom = _look_up(q - band - extra[0], p_first, p_step, closing)
+    top = _look_up(q + band + extra[1], p_first, p_step, opening)
+    if inside:  # what the stops keep the play from does not pull at it
+        free_bottom = _look_up(q - band, p_first, p_step, closing)
+        free_top = _look_up(q + band, p_first, p_step, opening)
+        bottom += min(stops[1], max(stops[0], free_bottom)) - free_bottom
+        top += min(stops[1], max(stops[0], free_top)) - free_top
+    return bottom, top
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _play_step(
     q: float,
     grown: float,
-    extra: float,
-    at_once: bool,
+    extra: tuple[float, float],
+    modes: tuple[bool, bool],
     stops: FloatArray,
     tables: Tables,
     plays: Plays,
     elements: FloatArray,
 ) -> tuple[float, bool]:
-    """Moves the elements to pressure `q`; those that `extra` holds stay. Returns their sum and whether any slipped."""
+    """Moves the elements to pressure `q`; those that `extra` (closing, opening) holds stay.
+
+    `modes`: whether they jump, and whether only what lies inside the stops pulls. Returns their sum and whether any
+    slipped.
+    """
     p_first, p_step, closing, opening = tables
     w = 0.0
     slipped = False
     for j in range(elements.size):
         e = elements[j]
         band = plays[0][j] + grown
-        held_bottom = held_top = e
-        if extra > 0.0:
-            held_bottom = _look_up(q - band - extra, p_first, p_step, closing)
-            held_top = _look_up(q + band + extra, p_first, p_step, opening)
-            if held_bottom <= e <= held_top:
+        held = (e, e)
+        if extra[0] > 0.0 or extra[1] > 0.0:
+            held = _held(q, band, extra, modes[1], stops, tables)
+            if held[0] <= e <= held[1]:
                 w += plays[1][j] * e
                 continue
         bottom = _look_up(q - band, p_first, p_step, closing)
         top = _look_up(q + band, p_first, p_step, opening)
-        if at_once and extra > 0.0:
-            bottom = _jumps(e, bottom, held_bottom) if bottom > e else bottom
-            top = _jumps(e, top, held_top) if top < e else top
+        if modes[0] and extra[0] > 0.0:
+            bottom = _jumps(e, bottom, held[0]) if bottom > e else bottom
+            top = _jumps(e, top, held[1]) if top < e else top
         slipped = True
         e = max(stops[0], min(stops[1], max(bottom, min(top, e))))
         elements[j] = e
@@ -108,12 +131,25 @@ def _play_step(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _half_band(wide: float, travelled: float, speed: float, c: FloatArray) -> float:
+def _half_band(wide: float, state: State, c: FloatArray) -> float:
     """What is added to the half deadband now: what time added, wear, and friction that falls with speed."""
-    grown: float = wide + c[V_WEAR] * travelled
+    grown: float = wide + c[V_WEAR] * state[6]
     if c[V_STRIBECK] > 0.0:
-        grown += c[V_STRIBECK] * np.exp(-speed / c[V_STRIBECK_SPEED])
+        grown += c[V_STRIBECK] * np.exp(-state[4] / c[V_STRIBECK_SPEED])
     return grown
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _breakaway(state: State, c: FloatArray) -> tuple[float, float]:
+    """What it takes beyond sliding friction to close and to open now.
+
+    A stem that moves passes rest before it can move the other way: there it has to break away again.
+    """
+    extra = c[V_BREAKAWAY]
+    if c[V_AGING_S] > 0.0:
+        extra *= 1.0 - np.exp(-state[7] / c[V_AGING_S])
+    slides = 0.0 if state[3] else state[5]
+    return 0.0 if slides > 0.0 else extra, 0.0 if slides < 0.0 else extra
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -122,6 +158,33 @@ def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -
     slow = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
     bounded: float = max(stops[2], min(stops[3], slow))
     return bounded
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _move(
+    h: float, new_w: float, slipped: bool, c: FloatArray, stops: FloatArray, lags: FloatArray, state: State
+) -> State:
+    """The state after `h` seconds in which the stem moves toward the play output `new_w`."""
+    x, w, after, stuck, _, toward, travelled, rested = state
+    new_after = _toward(after, w, new_w, lags[2])
+    new = _bounded(x, _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1]), h, c, stops)
+    if c[V_HELD] > 0.0:
+        slipped = abs(new_after - x) > c[V_HELD]
+        new = x if stuck and not slipped else new
+    speed = abs(new - x) / h
+    deciding = abs(new_w - w) / h if c[V_TARGET_STICKS] != 0.0 else speed
+    stuck = (stuck and not slipped) or deciding < c[V_STICK_SPEED]
+    rested = rested + h if stuck else 0.0
+    toward = new - x if new != x else toward
+    return new, new_w, new_after, stuck, speed, toward, travelled + abs(new - x), rested
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _stand(at: float, stops: FloatArray, elements: FloatArray, state: State) -> State:
+    """The state of a stem that rests at `at`, and so does what pulls at it."""
+    x = max(stops[2], min(stops[3], at))
+    elements += x - state[1]
+    return x, x, x, True, 0.0, state[5], state[6], state[7]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -135,33 +198,35 @@ def coupled_pass(
     tables: Tables,
     plays: Plays,
     start: tuple[float, float],
+    marks: np.ndarray,
+    stands: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem. `stops`: (low, high) of the play output, then of the stem; `start`: (x, w)."""
+    """Fills `out` (fine) with the stem. `stops`: (low, high) of the play output, then of the stem; `start`: (x, w).
+
+    At the fine points `marks` the stem rests at `stands`: play output and stem are set there, and it sticks.
+    """
     elements = np.full(plays[0].size, start[1])
-    w, _ = _play_step(force[0], widening[0], 0.0, False, stops, tables, plays, elements)
+    w, _ = _play_step(force[0], widening[0], (0.0, 0.0), (False, False), stops, tables, plays, elements)
     x = max(stops[2], min(stops[3], start[0]))
+    state = (x, w, w, True, 0.0, 0.0, 0.0, FOREVER)
     out[0] = x
-    after, stuck, travelled, speed, last_h = w, True, 0.0, 0.0, -1.0
+    last_h, m = -1.0, 0
     lags = np.zeros((3, 2))
-    at_once = c[V_STICK_SPEED] >= FOREVER
+    modes = (c[V_STICK_SPEED] >= FOREVER, c[V_TARGET_STICKS] != 0.0)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
             last_h = h
             _decays(h, c, lags)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            grown = _half_band(widening[f if widening.size > 1 else 0], travelled, speed, c)
+            grown = _half_band(widening[f if widening.size > 1 else 0], state, c)
             if c[V_IN_MOTION] != 0.0:
-                elements += c[V_IN_MOTION] * (x - w)
-            extra = c[V_BREAKAWAY] if stuck else 0.0
-            new_w, slipped = _play_step(force[f], grown, extra, at_once, stops, tables, plays, elements)
-            new_after = _toward(after, w, new_w, lags[2])
-            new = _bounded(x, _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1]), h, c, stops)
-            if c[V_HELD] > 0.0:
-                slipped = abs(new_after - x) > c[V_HELD]
-                new = x if stuck and not slipped else new
-            speed = abs(new - x) / h
-            stuck = (stuck and not slipped) or speed < c[V_STICK_SPEED]
-            x, w, after, travelled = new, new_w, new_after, travelled + abs(new - x)
-            out[f] = x
+                elements += c[V_IN_MOTION] * (state[0] - state[1])
+            extra = _breakaway(state, c)
+            w, slipped = _play_step(force[f], grown, extra, modes, stops, tables, plays, elements)
+            state = _move(h, w, slipped, c, stops, lags, state)
+            if m < marks.size and f == marks[m]:
+                state = _stand(stands[m], stops, elements, state)
+                m += 1
+            out[f] = state[0]

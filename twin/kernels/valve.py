@@ -11,7 +11,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.kernels.coupled import coupled_pass
 from twin.kernels.lag import elapsed_s, lagged
-from twin.kernels.play import plain_play, play_target
+from twin.kernels.play import NO_RESTS, Rests, plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.slots import (
     V_BREAKAWAY,
@@ -63,21 +63,26 @@ def valve_kernel(
     x0: float,
     w0: float,
     out: FloatArray,
+    rests: Rests = NO_RESTS,
 ) -> None:
-    """Fills `out` with the stem position. `spreads[j]` widens the half deadband of play element j [pressure]."""
+    """Fills `out` with the stem position. `spreads[j]` widens the half deadband of play element j [pressure].
+
+    At the fine points `rests` play output and stem are set to known positions (twin/fit/rests.py).
+    """
     force = _force(time_s, offsets, pressure, c, w0)
     widening = _widening(time_s, offsets, c)
     tables = (float(p_first), float(p_step), closing, opening)
     stem_low, stem_high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
-    if c[_COUPLING].any():
+    # elements and a second lag have their own states, which only the joint loop can set together
+    if c[_COUPLING].any() or (rests[0].size and (spreads.size > 1 or c[V_TAU_AFTER_S] > 0.0)):
         stops = np.array([c[V_LOW], c[V_HIGH], stem_low, stem_high])
         plays, start = (spreads, weights), (float(x0), float(w0))
-        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, start, out)
+        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, start, *rests, out)
     else:
-        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, spreads, weights, w0)
+        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, spreads, weights, w0, rests)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
-        stem_pass(time_s, offsets, target, lags_s, rates, stem_low, stem_high, x0, out)
+        stem_pass(time_s, offsets, target, lags_s, rates, stem_low, stem_high, x0, *rests, out)
     _creep(time_s, offsets, c, out)
 
 

@@ -1,0 +1,83 @@
+"""The refresh period of a reading, to the accuracy that a replay needs, from the reading alone.
+
+A held reading is late by a sawtooth of time: y = x - v d(t), with d growing from 0 to the period and falling back. So
+the difference between the reading and its smooth, times the speed, has a sharp line at the refresh frequency, and the
+phase of the line says when the reading was fresh. A period that is off by a ten thousandth loses step within minutes;
+the line of a record of T seconds is 1/T wide, and its top is known better than that.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter1d
+
+from logs.recording import FloatArray
+
+#: Width of the smooth, in rows; refreshes much slower than this are smooth themselves.
+_WIDTHS = (4.0, 16.0)
+_LINES = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Refresh:
+    """`period_s` between refreshes, and the first of them after the first row as a fraction of it."""
+
+    period_s: float
+    phase: float
+
+
+def refreshes(time_s: FloatArray, reading: FloatArray) -> list[Refresh]:
+    """Periods that the reading's lateness suggests, the strongest lines first; empty for a record too short."""
+    known = np.isfinite(reading)
+    if np.count_nonzero(known) < 64:
+        return []
+    t = time_s - time_s[0]
+    y = np.interp(t, t[known], reading[known])
+    row_s = float(np.median(np.diff(t)))
+    found: list[Refresh] = []
+    seen: list[float] = []
+    for width in _WIDTHS:
+        for frequency in _lines(_lateness(t, y, width), row_s):
+            if any(abs(frequency - other) * t[-1] < 3.0 for other in seen):
+                continue
+            seen.append(frequency)
+            for true in (frequency, 1.0 / row_s - frequency):  # a refresh faster than every other row is folded
+                if true * row_s < 0.97:
+                    found.append(_refined(t, y, width, true))
+    return found
+
+
+def _lateness(t: FloatArray, y: FloatArray, width: float) -> FloatArray:
+    """What the reading is off its smooth, times its speed: speed squared times the sawtooth of the lateness."""
+    smooth = gaussian_filter1d(y, width, mode="nearest")
+    speed = np.gradient(smooth, t)
+    product = (y - smooth) * speed
+    bound = 8.0 * float(np.mean(np.abs(product))) + 1e-300
+    return np.asarray(np.clip(product, -bound, bound))
+
+
+def _lines(product: FloatArray, row_s: float) -> list[float]:
+    """Frequencies [Hz] of the strongest lines."""
+    size = 4 * product.size
+    power = np.abs(np.fft.rfft(product - product.mean(), size))
+    frequency = np.fft.rfftfreq(size, row_s)
+    power[frequency < 0.03 / row_s] = 0.0
+    tops = []
+    for _ in range(_LINES):
+        top = int(np.argmax(power))
+        tops.append(float(frequency[top]))
+        power[max(0, top - 12) : top + 13] = 0.0
+    return tops
+
+
+def _refined(t: FloatArray, y: FloatArray, width: float, frequency: float) -> Refresh:
+    """The top of the line, with the true times of the rows, and its phase."""
+    product = _lateness(t, y, width)
+    product = product - product.mean()
+    near = frequency + np.linspace(-1.0, 1.0, 41) / max(float(t[-1]), 1e-9)
+    line = np.exp(-2j * np.pi * near[:, None] * t[None, :]) @ product
+    top = int(np.argmax(np.abs(line)))
+    turn = -(np.angle(line[top]) + 0.5 * np.pi) / (2.0 * np.pi)
+    return Refresh(float(1.0 / near[top]), float(turn % 1.0))
