@@ -15,6 +15,7 @@ from twin.catalog import effects
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
+from twin.closed_loop import closed_loop
 from twin.closure import gap
 from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
@@ -22,6 +23,7 @@ from twin.fit.channel import chain_channel, predict_reading
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.gap import GapParts, heldout_parts
+from twin.next.propose import propose
 from twin.noise.model import estimate_noise
 from twin.plant import Inserted, Plant, effect_tables
 from twin.sensing import Sensing, sense
@@ -96,7 +98,10 @@ def diagnose(
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
     model, units = _model(final, case)
-    return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, result)
+    proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
+    loop = closed_loop(recordings, final)
+    diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
+    return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, result, proposal.file)
 
 
 def _retuned(case: Case) -> Fit:

@@ -6,7 +6,7 @@ After a clear verdict nothing; after `no_gap` and `unexplained` the experiment t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from control.experiment import Experiment
@@ -25,6 +25,10 @@ from twin.stages import StageResult
 from twin.verdict import Judgement
 
 FILE = "next.toml"
+#: An experiment that brings less than this share of what settles a dispute is not worth the bench's time.
+_HELPS = 0.3
+#: What is asked of an experiment beyond what settles a dispute on average: half of the time less comes out.
+_SAFE = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,34 +55,35 @@ def propose(
     if not judgement.causes:
         return _coverage(result, judgement, tests, rules, limits)
     words = [_alike_words(dispute, case.sigma_p is not None) for dispute in open_ if dispute.alike]
-    needed = weights.temperature * math.log(1.0 / weights.confusable)
+    needed = _SAFE * weights.temperature * math.log(1.0 / weights.confusable)
     for dispute in open_:
         if not dispute.rivals:
             continue
         found = best_experiment(dispute, _scale(result, dispute), limits, needed)
-        settled = [r.name for r, d in zip(dispute.rivals, found.distances, strict=True) if d.gain >= needed]
-        helped = [r.name for r, d in zip(dispute.rivals, found.distances, strict=True) if d.gain >= 0.3 * needed]
-        if helped:
-            return _experiment(result, dispute, found, settled or helped, bool(settled), words)
+        gains = {r.name: d.gain / needed for r, d in zip(dispute.rivals, found.distances, strict=True)}
+        if max(gains.values()) >= _HELPS:
+            return _experiment(result, dispute, found, gains, words)
         words += [_below_noise(dispute, found, case.sigma_p is not None, result)]
     return Proposal(NextExperiment(" ".join(words) or "No experiment of the library separates what is left."))
 
 
 def _experiment(
-    result: StageResult, dispute: Dispute, found: Found, names: Sequence[str], settles: bool, words: Sequence[str]
+    result: StageResult, dispute: Dispute, found: Found, gains: Mapping[str, float], words: Sequence[str]
 ) -> Proposal:
+    """The proposal of an experiment; `gains` are per rival, in units of what settles the dispute."""
     experiment = rounded(found.experiment)
-    case = result.case
-    best = max(found.distances, key=lambda d: d.gain)
-    size, unit = best.spread, case.scales.position_unit
-    if dispute.channel == "pressure":
-        unit = case.scales.pressure_unit
-    verb = "separates" if settles else "helps to separate"
+    scales = result.case.scales
+    unit = scales.pressure_unit if dispute.channel == "pressure" else scales.position_unit
+    settled = [_plain(name) for name, gain in gains.items() if gain >= 1.0]
+    helped = [_plain(name) for name, gain in gains.items() if _HELPS <= gain < 1.0]
+    claims = [f"separates {_plain(dispute.cause)} from {' and '.join(settled)}"] if settled else []
+    claims += [f"helps to separate {_plain(dispute.cause)} from {' and '.join(helped)}"] if helped else []
+    size = max(found.distances, key=lambda d: d.gain).spread
     why = (
-        f"{verb} {_plain(dispute.cause)} from {' and '.join(_plain(n) for n in names)} in "
-        f"{duration_words(experiment.duration_s)}: their predictions differ by {size:.2g} {unit} RMS beyond what "
-        f"re-fitting could hide."
+        f"{' and '.join(claims)} in {duration_words(experiment.duration_s)}: "
+        f"predictions differ by up to {size:.2g} {unit} RMS beyond what re-fitting could hide."
     )
+    why = why[0].upper() + why[1:]
     text = " ".join([why, *words])
     return Proposal(NextExperiment(text, FILE), toml_text(experiment, why), experiment)
 
