@@ -61,10 +61,10 @@ def test_the_model_that_is_the_valve_predicts_its_loop() -> None:
 
 
 def test_the_model_without_the_effect_misses_what_the_loop_does() -> None:
-    said = closed_loop([recorded(STICKY)], Plant(DesignModel()))
-    errors, cycles = table(said, "steady_error_percent_of_travel"), table(said, "limit_cycle_percent_of_travel")
-    missed = abs(errors["predicted"] - errors["recorded"])
-    assert missed > 0.5
+    errors = table(
+        closed_loop([recorded(STICKY, "if_then_pi")], Plant(DesignModel())), "steady_error_percent_of_travel"
+    )
+    assert errors["recorded"] - errors["predicted"] > 1.0
 
 
 def test_a_strangers_record_is_judged_on_its_own_command() -> None:
@@ -93,4 +93,4 @@ def test_a_swing_is_a_limit_cycle_and_a_constant_error_is_none() -> None:
     assert calm.steady_error == pytest.approx(2.0)
     assert calm.limit_cycle == 0.0
     assert restless.limit_cycle == pytest.approx(2.0, rel=0.1)
-    assert restless.never_settled == 3
+    assert restless.never_settled >= 2

@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients
-from twin.kernels.play import plain_play, play_target
+from twin.kernels.play import NO_RESTS, plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
@@ -122,12 +122,12 @@ class Sliding:
         """The stem on the fine points of the row."""
         target = np.zeros(force.size)
         for k, (spread, weight) in enumerate(self._shares):
-            one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
+            one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k], NO_RESTS)
             self._elements[k] = float(one[-1])
             target += weight * one
         target = self._after.follow(time_s, offsets, target)
         out = np.empty(force.size)
-        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, out)
+        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, *NO_RESTS, out)
         self._x = float(out[-1])
         return out
 
