@@ -34,7 +34,7 @@ def error(claims: Sequence[Claim]) -> float:
     """
     if not claims:
         return float("nan")
-    return sum(b["claims"] * abs(b["said"] - b["right"]) for b in curve(claims)) / len(claims)
+    return float(sum(b["claims"] * abs(b["said"] - b["right"]) for b in curve(claims))) / len(claims)
 
 
 def curve(claims: Sequence[Claim]) -> list[dict[str, Any]]:

@@ -78,7 +78,8 @@ def hidden(line: Line) -> bool:
     return _faulty(line) and line["stratum"] == STRATA[0]
 
 
-def _stratum(lines: Sequence[Line]) -> dict[str, Any]:
+def _stratum(lines: Sequence[Line], name: str) -> dict[str, Any]:
+    lines = [line for line in lines if _faulty(line) and line["stratum"] == name]
     return {
         "detected": rate([line["verdict"] != "no_gap" for line in lines]),
         "right": rate([right(line) for line in lines]),
