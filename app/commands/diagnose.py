@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
+from app.session import bench_options, sealed_option
+
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from control.design import DesignModel
     from logs.recording import Recording
+    from twin.diagnose import Outcome
 
 
 @click.command()
-@click.argument("runs", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--design", type=click.Path(path_type=Path), help="Design model file; without it the thesis's numbers.")
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for diagnosis.json, report, model.")
 @click.option("--map", "mapping", help="Columns of a foreign file: time=COL,command=COL,pressure=COL,position=COL.")
@@ -21,7 +26,12 @@ if TYPE_CHECKING:
 @click.option(
     "--command-timing", type=click.Choice(["before", "after", "unknown"]), default="before", show_default=True
 )
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the bootstrap.")
+@click.option("--active", is_flag=True, help="Run the experiments that tell most on the bench, until it is sure.")
+@click.option(
+    "--budget-minutes", type=float, default=60.0, show_default=True, metavar="N", help="Bench time of --active [min]."
+)
+@bench_options
+@sealed_option
 @click.option("--json", "as_json", is_flag=True, help="Print diagnosis.json to stdout.")
 def command(
     runs: tuple[Path, ...],
@@ -30,32 +40,95 @@ def command(
     mapping: str | None,
     units: str | None,
     command_timing: str,
-    seed: int,
+    active: bool,
+    budget_minutes: float,
     as_json: bool,
+    **bench: Any,
 ) -> None:
-    """Diagnose RUNS (run folders, CSV or Parquet files) of one bench against a design model."""
-    import json
+    """Diagnose RUNS (run folders, CSV or Parquet files) of one bench against a design model.
+
+    With --active it goes on by itself: the experiment that best separates what is still confused is run on the bench
+    (without --port: on the virtual valve) and diagnosed together with RUNS, which may then be left out.
+    """
     from typing import Literal, cast
 
-    from app.progress import diagnosis_progress
+    from hal.errors import BadInput
     from logs.load import load_recording
+
+    if not runs and not active:
+        raise BadInput("name a run to diagnose, or let --active make one: diagnose RUN... --out DIR")
+    timing = cast(Literal["before", "after", "unknown"], command_timing)
+    recordings = [load_recording(r, mapping=mapping, units=units, command_timing=timing) for r in runs]
+    out.mkdir(parents=True, exist_ok=True)
+    if active:
+        outcome = _pursued(recordings, design, out, budget_minutes, bench)
+    else:
+        if any(value for name, value in bench.items() if name != "seed"):
+            raise BadInput("options that choose a bench need --active: without it nothing but files is touched")
+        outcome = _diagnosed(recordings, design, out, bench["seed"])
+    _print(outcome, out, as_json)
+
+
+def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, seed: int) -> Outcome:
+    """Diagnoses and writes everything into `out`."""
+    from app.progress import diagnosis_progress
     from twin.diagnose import Settings, diagnose
     from twin.insert import inserted_from
     from twin.write import write_outcome
 
-    timing = cast(Literal["before", "after", "unknown"], command_timing)
-    recordings = [load_recording(r, mapping=mapping, units=units, command_timing=timing) for r in runs]
-    model = _design(design, recordings)
-    out.mkdir(parents=True, exist_ok=True)
+    model = _design(design, list(recordings))
     with diagnosis_progress() as progress:
         outcome = diagnose(recordings, model, inserted_from(model), Settings(seed=seed), progress)
         write_outcome(outcome, out, progress)
+    return outcome
+
+
+def _pursued(
+    recordings: list[Recording], design: Path | None, out: Path, budget_minutes: float, bench: dict[str, Any]
+) -> Outcome:
+    """The circle of diagnosis and experiment; every round is written, so that a stop leaves what is known."""
+    import json
+    from dataclasses import asdict
+
+    from app.active import Round, first_experiment, pursue, runner
+    from hal.profile import load_profile
+
+    found = load_profile(bench["profile"] or ("positioner" if bench["physics"] == "positioner" else "virtual"))
+    first = None if recordings else first_experiment(found.command_unit, budget_minutes)
+
+    def tell(last: Round) -> None:
+        causes = ", ".join(f"{name} {p:.2f}" for name, p in last.causes) or "no cause named"
+        click.echo(
+            f"round {last.number}, {last.bench_minutes:.1f} min on the bench: {last.verdict}: {causes}", err=True
+        )
+        for names in last.confusable:
+            click.echo(f"  still confused: {', '.join(names)}", err=True)
+        click.echo(f"  next: {last.next}", err=True)
+
+    with runner(out, **{**bench, "profile": found}) as run:
+        pursuit = pursue(
+            recordings, first, budget_minutes, run, lambda known: _diagnosed(known, design, out, bench["seed"]), tell
+        )
+    document = {"why": pursuit.why, "rounds": [asdict(one) for one in pursuit.rounds]}
+    (out / "rounds.json").write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
+    count = len(pursuit.rounds)
+    click.echo(f"stopped after {count} round{'s' if count > 1 else ''}: {pursuit.why}", err=True)
+    return pursuit.outcome
+
+
+def _print(outcome: Outcome, out: Path, as_json: bool) -> None:
+    import json
+
     if as_json:
         click.echo(json.dumps(outcome.diagnosis.to_json(), indent=2))
         return
     click.echo(outcome.diagnosis.statement)
     for names in outcome.diagnosis.confusable:
         click.echo(f"This data cannot tell apart: {', '.join(names)}.")
+    proposed = outcome.diagnosis.next_experiment
+    if proposed is not None:
+        how = f" Run it: lostmotion sweep {out / proposed.file}" if proposed.file else ""
+        click.echo(f"Next: {proposed.why}{how}")
     click.echo(f"Report: {out / 'report.html'}; view: {out / 'diagnosis.rrd'}; updated model: {out / 'model.toml'}")
 
 

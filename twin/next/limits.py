@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,6 +15,8 @@ from logs.units import PERCENT, conversion, plain_name
 _MARGIN = 0.1
 #: Sampling periods that a bench with a serial wire can keep [s].
 _FASTEST_S, _SLOWEST_S = 0.05, 0.5
+#: Commands outside these quantiles of a record were passed through, not kept.
+_KEPT = (0.02, 0.98)
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,21 +42,25 @@ class Limits:
 def limits_of(design: DesignModel, recordings: Sequence[Recording]) -> Limits:
     """The limits for a bench from which these recordings came, in the design's units.
 
-    Low and high are the hull of all commands that were recorded and of the full stroke on both curves with a margin.
+    Low and high are the hull of the commands that the valve was kept at and of the full stroke on both curves with a
+    margin, within what the bench allows where a record says so.
     """
     percent = plain_name(design.pressure_unit) == PERCENT
     unit = "percent" if percent else "psi"
     scale = 1.0 if percent else conversion("psi", "pressure").scale / conversion(design.pressure_unit, "pressure").scale
     span = design.travel / design.compliance
-    seen = [r.command[np.isfinite(r.command)] for r in recordings]
-    low = min([design.a2 - _MARGIN * span, *(float(c.min()) for c in seen if c.size)])
-    high = max([design.a1 + (1.0 + _MARGIN) * span, *(float(c.max()) for c in seen if c.size)])
+    kept = [np.quantile(r.command[np.isfinite(r.command)], _KEPT) for r in recordings]
+    low = min([design.a2 - _MARGIN * span, *(float(ends[0]) for ends in kept)])
+    high = max([design.a1 + (1.0 + _MARGIN) * span, *(float(ends[1]) for ends in kept)])
+    allowed = [_allowed(r) for r in recordings]
+    low = max([low / scale, 0.0, *(ends[0] for ends in allowed)])
+    high = min([high / scale, 100.0 if percent else float("inf"), *(ends[1] for ends in allowed)])
     period_s = float(np.median([r.period_s for r in recordings])) if recordings else 0.1
     return Limits(
         unit=unit,
         scale=scale,
-        low=max(low, 0.0) / scale,
-        high=(min(high, 100.0) if percent else high) / scale,
+        low=low,
+        high=high,
         middle=(design.offset + 0.5 * span) / scale,
         span=span / scale,
         deadband=design.deadband / scale,
@@ -62,3 +68,12 @@ def limits_of(design: DesignModel, recordings: Sequence[Recording]) -> Limits:
         stroke_s=design.travel / design.rate_limit,
         period_s=float(np.clip(round(period_s, 4), _FASTEST_S, _SLOWEST_S)),
     )
+
+
+def _allowed(recording: Recording) -> tuple[float, float]:
+    """The bench's range of commands, in its own unit, from the start document of a run; anything for other files."""
+    run = recording.meta.get("run")
+    bench = run.get("bench") if isinstance(run, Mapping) else None
+    if not isinstance(bench, Mapping):
+        return float("-inf"), float("inf")
+    return float(bench.get("command_min", "-inf")), float(bench.get("command_max", "inf"))
