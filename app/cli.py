@@ -64,9 +64,11 @@ def run(argv: Sequence[str]) -> int:
         return result if isinstance(result, int) else 0
     except click.exceptions.Exit as stop:
         return int(stop.exit_code)
-    except click.ClickException as error:
+    except click.exceptions.NoArgsIsHelpError as error:
         error.show()
         return 2
+    except click.ClickException as error:
+        return _fail(_usage(error), 2)
     except (KeyboardInterrupt, click.Abort):
         click.echo("lostmotion: interrupted", err=True)
         return 130
@@ -77,6 +79,14 @@ def run(argv: Sequence[str]) -> int:
         return 1
     except Exception as error:
         return _fail(f"{type(error).__name__}: {error}; this is a defect, --debug shows where", 1)
+
+
+def _usage(error: click.ClickException) -> str:
+    """Bad usage as one sentence that says where the help is."""
+    sentence = " ".join(error.format_message().split()).rstrip(".")
+    where = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "lostmotion"
+    link = " See" if sentence.endswith("?") else "; see"
+    return f"{sentence[:1].lower()}{sentence[1:]}{link} `{where} --help`"
 
 
 def _fail(message: str, code: int) -> int:

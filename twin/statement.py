@@ -29,6 +29,8 @@ def statement(diagnosis: Diagnosis) -> str:
 
 
 def _named(cause: Cause) -> str:
-    sizes = ", ".join(f"{name} {e.value:.3g} {e.unit}".rstrip() for name, e in cause.parameters.items())
+    sizes = ", ".join(
+        f"{name} {e.value:.3g} {'' if e.unit == '1' else e.unit}".rstrip() for name, e in cause.parameters.items()
+    )
     plain = cause.name.removeprefix("parameter:")
     return f"{plain} ({sizes}; probability {cause.probability:.2f})" if sizes else plain

@@ -36,7 +36,10 @@ def command(run: Path, seed: str, commitment: Path | None, as_json: bool) -> Non
 def _truth(label: Label) -> str:
     if not label.causes:
         return f"nothing is wrong with this {label.family} valve; the commitment holds"
-    causes = " and ".join(f"{cause.key} {cause.size:g} {cause.unit} ({cause.grade})" for cause in label.causes)
+    causes = " and ".join(
+        f"{cause.key} {cause.size:g}{'' if cause.unit == '1' else ' ' + cause.unit} ({cause.grade})"
+        for cause in label.causes
+    )
     return f"{label.kind}: {causes}, on the {label.family} valve; the commitment holds"
 
 
