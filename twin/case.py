@@ -34,8 +34,20 @@ class Margin:
 
 
 @dataclass(frozen=True, slots=True)
+class Span:
+    """Rows `start`..`stop`-1 of recording number `record`."""
+
+    record: int
+    start: int
+    stop: int
+
+
+@dataclass(frozen=True, slots=True)
 class Case:
-    """Everything a diagnosis starts from. `sigma_p` is None without a measured pressure."""
+    """Everything a diagnosis starts from. `sigma_p` is None without a measured pressure.
+
+    A look at a large case (`twin/thin.py`) knows the `whole` of it, and which `spans` its recordings are cut from.
+    """
 
     recordings: tuple[Recording, ...]
     base: Plant
@@ -44,6 +56,13 @@ class Case:
     sigma_y: float
     sigma_p: float | None
     trials: tuple[Trial, ...]
+    whole: Case | None = None
+    spans: tuple[Span, ...] = ()
+
+    @property
+    def everything(self) -> Case:
+        """The case with all rows."""
+        return self.whole or self
 
     @property
     def travel(self) -> float:
@@ -96,6 +115,6 @@ def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:
-    """Step of the fine grid [s]: short against the lags, but no more than about 400,000 steps in all."""
+    """Step of the fine grid [s]: short against the lags, but no more than about 4,000,000 steps in all."""
     wanted = min(0.1, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, 0.01))
-    return max(wanted, recording.duration_s / 400_000.0)
+    return max(wanted, recording.duration_s / 4_000_000.0)

@@ -10,6 +10,7 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import DataNote, FloatArray, Recording
+from twin.admit import admit
 from twin.case import Case, Margin, make_case, widened
 from twin.catalog import effects
 from twin.choose.decide import DecisionRules
@@ -25,10 +26,12 @@ from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.gap import GapParts, heldout_parts
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
+from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.sensing import Sensing, sense
 from twin.stages import StageResult, judge
 from twin.statement import statement
+from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.verdict import Judgement, pronounce
 from twin.where.isolability import describe
@@ -79,29 +82,34 @@ def diagnose(
     Raises: `BadInput` when the recordings cannot carry a diagnosis (too short, no motion).
     """
     settings = settings or Settings()
+    recordings, notes = cut_at_holes(recordings)
     noise = estimate_noise(recordings)
+    notes += admit(recordings, Plant(design, tuple(inserted)), noise)
     recordings, timing_notes = settled_timing(recordings, Plant(design, tuple(inserted)), noise)
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
-    result = judge(case, settings.search, settings.rules, progress)
-    retuned = _retuned(case)
-    where = whereabouts(case, result, settings.seed)
+    look, look_notes = look_at(case)
+    notes += [*timing_notes, *look_notes]
+    result = judge(look, settings.search, settings.rules, progress)
+    retuned = _retuned(look)
+    everything = on_everything(case, result)
+    where = whereabouts(case, everything, settings.seed)
     ep_share = where.stage["ep"].value if where.stage else 0.0
     judgement = pronounce(result, sensing, ep_share, settings.weights)
     final = _final_plant(case, result, judgement, retuned, sensing)
     progress("held-out gap", 0.0)
-    parts = heldout_parts(case, result, judgement, retuned, sensing, progress)
-    diagnosis = _assembled(case, result, judgement, where, parts, settings, timing_notes, sensing)
+    parts = heldout_parts(look, result, judgement, retuned, sensing, progress)
+    diagnosis = _assembled(case, result, judgement, where, parts, settings, notes, sensing)
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
     model, units = _model(final, case)
     proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
     loop = closed_loop(recordings, final)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
-    return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, result, proposal.file)
+    return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
 
 
 def _retuned(case: Case) -> Fit:

@@ -72,7 +72,7 @@ def _with_false_readings(
     case: Case, retuned: Fit, sensing: Sensing, *errors: FloatArray
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """The errors with the false readings among the rows: they are part of the gap before, and accounted for after."""
-    chain = chain_channel(case.trials, case.sigma_y)
+    chain = chain_channel(case.everything.trials, case.sigma_y)
     false = np.concatenate(sensing.bad_rows) & np.isfinite(chain.measured)
     before, again, after = (error.copy() for error in errors)
     before[false] = (chain.measured - chain.prediction(case.base))[false]

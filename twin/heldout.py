@@ -40,8 +40,25 @@ class Heldout:
 
 def fold_weights(case: Case) -> list[npt.NDArray[np.float64]]:
     """For each fold the weight of every row in its fit: 0 in the blocks that the fold predicts."""
-    fold_of = np.concatenate([_fold_of_rows(t.recording.time_s) for t in case.trials])
+    fold_of = _folds(case)
     return [(fold_of != fold).astype(np.float64) for fold in range(FOLDS)]
+
+
+def _folds(case: Case) -> npt.NDArray[np.int64]:
+    """The fold of every row of the case."""
+    return np.concatenate([_fold_of_rows(t.recording.time_s) for t in case.trials])
+
+
+def _folds_of_everything(case: Case) -> npt.NDArray[np.int64]:
+    """The fold that predicts each row of the whole: rows among those that a look was fitted to share their fold."""
+    whole = case.everything
+    if whole is case:
+        return _folds(case)
+    folds = [_fold_of_rows(t.recording.time_s) for t in whole.trials]
+    for span in case.spans:
+        rows = slice(span.start, span.stop)
+        folds[span.record][rows] = _fold_of_rows(whole.trials[span.record].recording.time_s[rows])
+    return np.concatenate(folds)
 
 
 def _fold_of_rows(time_s: FloatArray) -> npt.NDArray[np.int64]:
@@ -66,11 +83,13 @@ def predict_heldout(
 
     `extra` are effects that no fit knows (the resolution of the reading).
     """
-    chain = chain_channel(case.trials, case.sigma_y)
+    whole = case.everything
+    chain = chain_channel(whole.trials, whole.sigma_y)
+    folds = _folds_of_everything(case)
     error = np.full(chain.measured.size, np.nan)
-    for weights in fold_weights(case):
+    for fold, weights in enumerate(fold_weights(case)):
         plant = combined(base, refitted(fits, channels, weights)) if fits else base
         plant = Plant(plant.design, (*plant.inserted, *extra))
-        held = (weights == 0.0) & chain.use
+        held = (folds == fold) & chain.use
         error[held] = (chain.measured - chain.prediction(plant))[held]
     return error

@@ -1,0 +1,187 @@
+"""A thinned look at large records: the search over hypotheses sees this, the final numbers are computed on all rows.
+
+Two ways, taken as far as needed. Rows are left out where they come faster than the lags of a valve need; a row keeps
+its reading as it is (no average: its noise stays the noise that was measured) and gets the mean command since the row
+before it, and the rows around a jump of the command stay, so that no edge moves. A record that lasts too long is seen
+through windows spread evenly over it, each where the stem covers most of its range.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import numpy.typing as npt
+
+from logs.recording import DataNote, FloatArray, Recording
+from twin.case import Case, Span, fine_step_s
+from twin.fit.trial import SETTLE_S, Trial, make_trial
+from twin.noise.model import NoiseModel, SignalNoise
+from twin.simulate import start_of
+from twin.stages import StageResult, drive_by_measured
+from twin.timegrid import make_grid
+
+Rows = npt.NDArray[np.int64]
+
+#: Above this many rows, or seconds, a look is taken; it has about so many.
+MOST_ROWS = 40_000
+LOOK_ROWS = 30_000
+MOST_S = 12_000.0
+LOOK_S = 6_000.0
+#: Windows are about so long [s], and each is the liveliest of so many in its part of the record.
+_WINDOW_S = 1_000.0
+_CHOICES = 8
+_JUMP = 0.005  # share of the command's span that is a jump
+
+
+def look_at(case: Case) -> tuple[Case, list[DataNote]]:
+    """The case to search on: `case` itself when it is small, else a look at it that knows its whole."""
+    spans = _spans(case)
+    rows = sum(s.stop - s.start for s in spans)
+    whole = sum(r.n for r in case.recordings)
+    if rows == whole <= MOST_ROWS:
+        return case, []
+    share = min(1.0, LOOK_ROWS / rows)
+    trials = tuple(_trial(case, span, share) for span in spans)
+    seen = sum(t.recording.n for t in trials)
+    stride = rows / max(seen, 1)
+    look = replace(
+        case,
+        recordings=tuple(t.recording for t in trials),
+        trials=trials,
+        noise=_thinned_noise(case.noise, stride),
+        whole=case,
+        spans=spans,
+    )
+    return look, [_note(case, trials, spans, rows, whole)]
+
+
+def on_everything(case: Case, result: StageResult) -> StageResult:
+    """What was decided on a look, with the trials of the whole case."""
+    if result.case is case:
+        return result
+    trials = case.trials if case.sigma_p is None else drive_by_measured(case, result.decisions[0])
+    return StageResult(case, result.decisions, trials)
+
+
+def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int) -> DataNote:
+    seen = sum(t.recording.n for t in trials)
+    where = "all over it"
+    if rows < whole:
+        where = f"in {len(spans)} windows spread over it; slow changes are judged within a window only"
+    return DataNote(
+        f"a large record: {whole} rows, {sum(r.duration_s for r in case.recordings):.4g} s",
+        f"causes are searched on {seen} rows {where}; the gap is computed on all rows",
+        whole - seen,
+    )
+
+
+def _spans(case: Case) -> tuple[Span, ...]:
+    total_s = sum(r.duration_s for r in case.recordings)
+    if total_s <= MOST_S:
+        return tuple(Span(k, 0, r.n) for k, r in enumerate(case.recordings))
+    spans: list[Span] = []
+    for k, recording in enumerate(case.recordings):
+        budget_s = max(LOOK_S * recording.duration_s / total_s, 100.0 * case.base.design.tau_s)
+        spans += _windows(k, recording, budget_s)
+    return tuple(spans)
+
+
+def _windows(record: int, recording: Recording, budget_s: float) -> list[Span]:
+    """Windows of together `budget_s`, one in each of as many equal parts of the record."""
+    if recording.duration_s <= budget_s:
+        return [Span(record, 0, recording.n)]
+    count = max(1, round(budget_s / _WINDOW_S))
+    length_s, part_s = budget_s / count, recording.duration_s / count
+    return [_liveliest(record, recording, k * part_s, part_s, length_s) for k in range(count)]
+
+
+def _liveliest(record: int, recording: Recording, begin_s: float, part_s: float, length_s: float) -> Span:
+    origin = recording.time_s[0]
+    best, most = Span(record, 0, recording.n), -1.0
+    for offset_s in np.linspace(0.0, max(part_s - length_s, 0.0), _CHOICES):
+        first = origin + begin_s + float(offset_s)
+        start, stop = (int(i) for i in np.searchsorted(recording.time_s, (first, first + length_s)))
+        values = recording.position[start:stop]
+        values = values[np.isfinite(values)]
+        if values.size < 20:
+            continue
+        low, high = np.percentile(values, (2.0, 98.0))
+        if float(high - low) > most:
+            best, most = Span(record, start, stop), float(high - low)
+    return best
+
+
+def _trial(case: Case, span: Span, share: float) -> Trial:
+    """The trial of one span, thinned to a `share` of its rows."""
+    whole = case.trials[span.record]
+    recording = whole.recording.slice(span.start, span.stop)
+    rows = kept_rows(recording.command, max(2, round(share * recording.n)))
+    thin = thinned(recording, rows)
+    bad = _false_rows(whole)[span.start : span.stop][rows]
+    step_s = fine_step_s(case.base.design, thin)
+    start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
+    return make_trial(thin, step_s, bad, start.play if start.play != start.position else None)
+
+
+def _false_rows(trial: Trial) -> npt.NDArray[np.bool_]:
+    """Readings that no fit may see, the settling at the start of the record aside."""
+    early = trial.recording.time_s - trial.recording.time_s[0] < SETTLE_S
+    false: npt.NDArray[np.bool_] = np.isfinite(trial.recording.position) & ~trial.use_y & ~early
+    return false
+
+
+def kept_rows(command: FloatArray, most: int) -> Rows:
+    """About `most` of the rows 0..n-1: the first, the last, both sides of every jump of the command, others evenly."""
+    n = command.size
+    if most >= n:
+        return np.arange(n, dtype=np.int64)
+    change = np.abs(np.diff(command))
+    least = _JUMP * max(float(np.ptp(command)), 1e-12)
+    jumps = np.flatnonzero(change > least)
+    if jumps.size > most // 4:  # a command that moves all the time has no edges; its largest ones are kept
+        jumps = np.sort(jumps[np.argsort(change[jumps], kind="stable")[::-1][: most // 4]])
+    edges = np.concatenate([[0, n - 1], jumps, jumps + 1])
+    stride = int(np.ceil(n / max(most - jumps.size, 2)))
+    return np.unique(np.concatenate([edges, np.arange(0, n, stride)])).astype(np.int64)
+
+
+def thinned(recording: Recording, rows: Rows) -> Recording:
+    """The recording at `rows` (ascending, the first is 0) with the mean command since the row before."""
+    time_s = recording.time_s
+    if rows.size == recording.n:
+        return recording
+    worked = np.concatenate([[0.0], np.cumsum(recording.command[1:] * np.diff(time_s))])
+    command = recording.command[rows].copy()
+    command[1:] = np.diff(worked[rows]) / np.diff(time_s[rows])
+    gaps = None
+    if recording.gap_before is not None:
+        gaps = np.diff(np.concatenate([[0], np.cumsum(recording.gap_before)])[rows + 1], prepend=0) > 0
+
+    def at(values: FloatArray | None) -> FloatArray | None:
+        return None if values is None else values[rows]
+
+    return replace(
+        recording,
+        time_s=time_s[rows],
+        command=command,
+        position=recording.position[rows],
+        pressure=at(recording.pressure),
+        target=at(recording.target),
+        gap_before=gaps,
+    )
+
+
+def _thinned_noise(noise: NoiseModel, stride: float) -> NoiseModel:
+    pressure = None if noise.pressure is None else _fewer(noise.pressure, stride)
+    return replace(noise, position=_fewer(noise.position, stride), pressure=pressure)
+
+
+def _fewer(noise: SignalNoise, stride: float) -> SignalNoise:
+    """The noise of every `stride`-th reading: as loud, with a shorter memory in rows."""
+    if stride < 1.5:
+        return noise
+    memory = max(1.0, noise.correlation_samples / stride)
+    return replace(
+        noise, correlation_samples=memory, period_s=noise.period_s * stride, ar=(), innovation_sigma=noise.sigma
+    )
