@@ -1,0 +1,121 @@
+"""After a verdict: the experiment that separates, the sensor to add, or nothing more; and the file for `sweep`."""
+
+from __future__ import annotations
+
+import time
+import tomllib
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from click.testing import CliRunner
+
+from app.cli import cli
+from control.experiment_file import from_plain
+from tests.twin.next.two_lags import dispute, result
+from twin.choose.decide import DecisionRules
+from twin.choose.weigh import Weights
+from twin.diagnosis import Cause, EffectTest
+from twin.next.candidates import library
+from twin.next.criterion import Scale
+from twin.next.file import rounded, toml_text
+from twin.next.limits import limits_of
+from twin.next.propose import Proposal, propose
+from twin.next.search import best_experiment
+from twin.next.sensors import advice
+from twin.verdict import Judgement
+
+
+def judged(*names: str, probability: float = 0.6, confusable: tuple[tuple[str, ...], ...] = ()) -> Judgement:
+    causes = (Cause(names[0], "ep", probability),) if names else ()
+    return Judgement("effect" if names else "no_gap", causes, (), confusable)
+
+
+def proposed(found: SimpleNamespace, judgement: Judgement, tests: tuple[EffectTest, ...] = ()) -> Proposal:
+    return propose(found, judgement, tests, DecisionRules(), Weights())  # type: ignore[arg-type]
+
+
+PAIR = ("dead_time", "sensor_lag")
+
+
+def test_proposes_what_separates_two_causes_as_a_file_that_sweep_runs(tmp_path: Path) -> None:
+    proposal = proposed(result(*PAIR), judged("dead_time", confusable=(PAIR,)))
+    assert proposal.next.file == "next.toml"
+    assert "eparate" in proposal.next.why
+    assert "dead time from sensor lag" in proposal.next.why
+    assert proposal.file is not None
+    (tmp_path / "next.toml").write_text(proposal.file, encoding="utf-8")
+    said = CliRunner().invoke(cli, ["sweep", str(tmp_path / "next.toml"), "--dry-run"])
+    assert said.exit_code == 0, said.output
+    assert "Nothing was moved" in said.output
+
+
+def test_two_causes_without_a_set_are_in_dispute_while_the_first_is_not_sure() -> None:
+    assert proposed(result(*PAIR), judged("dead_time", probability=0.8)).file is not None
+    sure = proposed(result(*PAIR), judged("dead_time", probability=0.97))
+    assert (sure.file, sure.next.file) == (None, None)
+    assert "No further experiment is needed" in sure.next.why
+
+
+def test_asks_for_a_sensor_where_no_experiment_separates() -> None:
+    names = ("sensor_lag", "additional_lag")
+    proposal = proposed(result(*names), judged("sensor_lag", probability=0.99, confusable=(names,)))
+    assert proposal.file is None
+    assert "cannot be separated with these sensors" in proposal.next.why
+    assert "second position signal" in proposal.next.why
+
+
+def test_after_no_gap_it_shows_what_the_records_could_not() -> None:
+    blind = EffectTest("friction_in_motion", False, "this record does not excite it")
+    proposal = proposed(result(*PAIR), judged(), (blind,))
+    assert proposal.file is not None
+    assert "friction in motion" in proposal.next.why
+    seen = EffectTest("creep", True, "", "share", 0.001, "1")
+    assert "no further experiment is needed" in proposed(result(*PAIR), judged(), (seen,)).next.why
+
+
+def test_an_effect_seen_only_when_huge_counts_as_not_shown() -> None:
+    huge = EffectTest("creep", True, "", "share", 0.5, "1")
+    assert "creep" in proposed(result(*PAIR), judged(), (huge,)).next.why
+
+
+def test_the_best_experiment_is_worth_more_than_any_of_the_library() -> None:
+    from twin.next.search import _evaluator  # the library one by one, without the shortcut
+
+    found = dispute(*PAIR)
+    limits = limits_of(result(*PAIR).case.base.design, result(*PAIR).case.recordings)
+    scale, needed = Scale("chain", 0.0006, 0.1), 50.0
+    best = best_experiment(found, scale, limits, needed)
+    evaluate = _evaluator(found, scale, limits, needed)
+    assert best.value >= max(evaluate(one).value for one in library(limits)[::4]) - 1e-12
+    assert max(d.gain for d in best.distances) >= needed
+
+
+def test_costs_less_than_two_seconds_of_processor_time() -> None:
+    result(*PAIR)
+    begun = time.process_time()
+    proposed(result(*PAIR), judged("dead_time", confusable=(PAIR,)))
+    assert time.process_time() - begun < 2.0
+
+
+def test_every_experiment_survives_its_file() -> None:
+    limits = limits_of(result(*PAIR).case.base.design, result(*PAIR).case.recordings)
+    for one in library(limits):
+        text = toml_text(rounded(one), "why\nand how")
+        assert text.startswith("# why\n# and how\n")
+        assert from_plain(tomllib.loads(text), "file") == rounded(one)
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "pressure", "word"),
+    [
+        ("sensor_lag", "additional_lag", True, "second position"),
+        ("flow_force", "nonlinear_spring", True, "pressure drop"),
+        ("dead_time", "additional_lag", False, "measured pressure"),
+        ("dead_time", "ep_rate_limit", True, "second pressure gauge"),
+        ("stiction", "position_dependent_friction", True, "stem force"),
+        ("lvdt_drift", "lvdt_calibration", True, "second position"),
+    ],
+)
+def test_advice_names_the_signal_that_is_missing(first: str, second: str, pressure: bool, word: str) -> None:
+    assert word in advice(first, second, pressure)
