@@ -24,6 +24,7 @@ class DecisionRules:
     evidence: float = 12.0
     share: float = 0.02
     thorough: float = 0.55
+    complete: float = 0.8
     large_share: float = 0.2
     unexplained: float = 0.2
     plain: float = 0.05
@@ -78,7 +79,7 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
-    return max(near, key=findings.score) if near else fit
+    return min(near, key=lambda f: (len(f.names), -findings.score(f))) if near else fit
 
 
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:
@@ -87,7 +88,7 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence
-    material = gain > max(rules.gain, floor - 1.0, rules.share * before)
+    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or gain > rules.complete * left)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
     return significant and material and thorough

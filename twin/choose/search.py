@@ -32,8 +32,8 @@ class SearchRules:
     rounds: int = 6
     polish: int = 8
     threads: int = 2
-    enough: float = 1.2  # a mean squared residual (noise = 1) that leaves nothing to explain
-    enough_share: float = 0.02  # likewise, as a share of what the design leaves
+    enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
+    enough_share: float = 0.001  # likewise, as a share of what the design leaves
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -163,9 +163,15 @@ def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
 
 
 def _same_claim(parent: Fit, cause: Cause) -> bool:
-    """Whether a design number has no meaning of its own beside an effect of the parent, or the other way round."""
+    """Whether a cause has no meaning beside one of the parent: the same signature, or a number that it absorbs."""
     pairs = [(a, b) for one in parent.space.causes for a, b in ((one, cause), (cause, one))]
-    return any(
-        a.effect is not None and b.effect is None and b.name.removeprefix("parameter:") in a.effect.absorbs
-        for a, b in pairs
-    )
+    return any(_takes(a, b) for a, b in pairs)
+
+
+def _takes(a: Cause, b: Cause) -> bool:
+    """Whether `b` beside `a` would only mend the form of `a`."""
+    if a.effect is None:
+        return False
+    if b.effect is None:
+        return b.name.removeprefix("parameter:") in a.effect.absorbs
+    return any(b.name in names for names in a.effect.same_as.values())

@@ -20,11 +20,13 @@ from twin.fit.fitting import Fit
 @dataclass(frozen=True, slots=True)
 class Weights:
     """Chosen on the calibration bank. `temperature` divides score differences; `confusable` is the least odds of a twin
-    against the accepted cause; `ceiling` is the highest probability ever claimed."""
+    against the accepted cause; `ceiling` is the highest probability ever claimed, `twin_ceiling` that of a cause
+    which no record of these signals can tell from another."""
 
     temperature: float = 10.0
     confusable: float = 0.03
-    ceiling: float = 0.99
+    ceiling: float = 0.97
+    twin_ceiling: float = 0.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,9 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     names = sorted({name for f in fits for name in f.names})
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
     probability = {n: min(p, weights.ceiling) for n, p in raw.items()}
+    for name in decision.names:
+        if _twins(decision.accepted, name):
+            probability[name] = min(probability[name], weights.twin_ceiling)
     return Weighed(probability, _sets(decision, fits, odds, weights))
 
 
