@@ -14,6 +14,10 @@ from twin.fit.space import Space, form_starts
 from twin.plant import Plant
 
 
+#: How far off, in z, the curves of a wrong design are looked for.
+_FAR = {"deadband": 0.6, "offset": 0.25}
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Fit:
     """A fitted hypothesis. `mse` is the mean squared residual in units of the noise variance; `prior` its penalty."""
@@ -97,7 +101,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
     Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
     the design numbers start as in the first of them. A form may read its starts from the `record`.
     """
-    heads = [np.zeros(len(space.numbers))]
+    heads = _number_starts(space)
     for cause in space.causes:
         if cause.form is None:
             continue
@@ -108,6 +112,28 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
         for head in heads:
             _copy_numbers(head, space, known[0])
     return heads
+
+
+def _number_starts(space: Space) -> list[FloatArray]:
+    """Design numbers at their nominals; where nothing but they stand accused, the curves also start far off.
+
+    A design that is wrong enough never moves, and then no small change of its numbers makes a difference.
+    """
+    heads = [np.zeros(len(space.numbers))]
+    if any(cause.form is not None for cause in space.causes):
+        return heads
+    accused = {c.name.removeprefix("parameter:") for c in space.causes} or set(space.numbers)
+    for name, far in _FAR.items():
+        if name in accused:
+            at = space.numbers.index(name)
+            heads = [_moved(head, at, z) for head in heads for z in (0.0, -far, far)]
+    return heads
+
+
+def _moved(head: FloatArray, at: int, z: float) -> FloatArray:
+    moved = head.copy()
+    moved[at] = z
+    return moved
 
 
 def _known_block(known: Fit, name: str, form: str) -> FloatArray | None:
