@@ -13,7 +13,6 @@ from twin.fit.least_squares import Minimum, descend, minimise
 from twin.fit.space import Space, form_starts
 from twin.plant import Plant
 
-
 #: How far off, in z, the curves of a wrong design are looked for.
 _FAR = {"deadband": 0.6, "offset": 0.25}
 
