@@ -26,6 +26,7 @@ from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.gap import GapParts, heldout_parts
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
+from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.sensing import Sensing, sense
@@ -79,7 +80,8 @@ def diagnose(
 ) -> Outcome:
     """Diagnoses recordings of one bench against a design in the same units.
 
-    Raises: `BadInput` when the recordings cannot carry a diagnosis (too short, no motion).
+    Raises: `BadInput` when the recordings cannot carry a diagnosis (too short, no motion); `Interrupted`, a
+    KeyboardInterrupt with what is known by then.
     """
     settings = settings or Settings()
     recordings, notes = cut_at_holes(recordings)
@@ -93,21 +95,26 @@ def diagnose(
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
     look, look_notes = look_at(case)
     notes += [*timing_notes, *look_notes]
-    result = judge(look, settings.search, settings.rules, progress)
-    retuned = _retuned(look)
-    everything = on_everything(case, result)
-    where = whereabouts(case, everything, settings.seed)
-    ep_share = where.stage["ep"].value if where.stage else 0.0
-    judgement = pronounce(result, sensing, ep_share, settings.weights)
-    final = _final_plant(case, result, judgement, retuned, sensing)
-    progress("held-out gap", 0.0)
-    parts = heldout_parts(look, result, judgement, retuned, sensing, progress)
-    diagnosis = _assembled(case, result, judgement, where, parts, settings, notes, sensing)
+    stage = Stage()
+    judgement: Judgement | None = None
+    try:
+        result = judge(look, settings.search, settings.rules, stage.told(progress))
+        retuned = _retuned(look)
+        everything = on_everything(case, result)
+        where = whereabouts(case, everything, settings.seed)
+        ep_share = where.stage["ep"].value if where.stage else 0.0
+        judgement = pronounce(result, sensing, ep_share, settings.weights)
+        final = _final_plant(case, result, judgement, retuned, sensing)
+        progress("held-out gap", 0.0)
+        parts = heldout_parts(look, result, judgement, retuned, sensing, stage.told(progress))
+        diagnosis = _assembled(case, result, judgement, where, parts, settings, notes, sensing)
+        proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
+        loop = closed_loop(recordings, final)
+    except KeyboardInterrupt as stop:
+        raise Interrupted(known_so_far(case, notes, stage, settings.seed, judgement)) from stop
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
     model, units = _model(final, case)
-    proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
-    loop = closed_loop(recordings, final)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
 

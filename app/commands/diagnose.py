@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +16,13 @@ if TYPE_CHECKING:
     from control.design import DesignModel
     from logs.recording import Recording
     from twin.diagnose import Outcome
+    from twin.diagnosis import Diagnosis
+
+#: What it means that nobody gave a design.
+_WITHOUT_DESIGN = {
+    "the defaults": "the thesis's numbers are what the record is held against",
+    "identified from the record": "the gap is what no numbers of the design can explain; a wrong number cannot show",
+}
 
 
 @click.command()
@@ -50,15 +58,12 @@ def command(
     With --active it goes on by itself: the experiment that best separates what is still confused is run on the bench
     (without --port: on the virtual valve) and diagnosed together with RUNS, which may then be left out.
     """
-    from typing import Literal, cast
-
+    from app.recordings import load_all
     from hal.errors import BadInput
-    from logs.load import load_recording
 
     if not runs and not active:
         raise BadInput("name a run to diagnose, or let --active make one: diagnose RUN... --out DIR")
-    timing = cast(Literal["before", "after", "unknown"], command_timing)
-    recordings = [load_recording(r, mapping=mapping, units=units, command_timing=timing) for r in runs]
+    recordings = load_all(runs, mapping, units, command_timing)
     out.mkdir(parents=True, exist_ok=True)
     if active:
         outcome = _pursued(recordings, design, out, budget_minutes, bench)
@@ -72,15 +77,35 @@ def command(
 def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, seed: int) -> Outcome:
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
+    from app.recordings import design_for
+    from logs.recording import DataNote
     from twin.diagnose import Settings, diagnose
     from twin.insert import inserted_from
+    from twin.partial import Interrupted
     from twin.write import write_outcome
 
-    model = _design(design, list(recordings))
-    with diagnosis_progress() as progress:
-        outcome = diagnose(recordings, model, inserted_from(model), Settings(seed=seed), progress)
-        write_outcome(outcome, out, progress)
+    model, origin = design_for(design, recordings)
+    said = () if design else (DataNote(f"no --design given: {origin}", _WITHOUT_DESIGN.get(origin, "")),)
+    recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
+    try:
+        with diagnosis_progress() as progress:
+            outcome = diagnose(recordings, model, inserted_from(model), Settings(seed=seed), progress)
+            write_outcome(outcome, out, progress)
+    except Interrupted as stop:
+        _leave(stop.diagnosis, model, out)
+        raise
     return outcome
+
+
+def _leave(diagnosis: Diagnosis, model: DesignModel, out: Path) -> None:
+    """What was known when Ctrl-C came, and the design as it was given."""
+    from control.design import save_design
+    from twin.diagnosis import write_diagnosis
+
+    write_diagnosis(diagnosis, out / "diagnosis.json")
+    save_design(model, out / "model.toml", diagnosis.statement)
+    click.echo(diagnosis.statement)
+    click.echo(f"What is known so far: {out / 'diagnosis.json'}")
 
 
 def _pursued(
@@ -130,22 +155,3 @@ def _print(outcome: Outcome, out: Path, as_json: bool) -> None:
         how = f" Run it: lostmotion sweep {out / proposed.file}" if proposed.file else ""
         click.echo(f"Next: {proposed.why}{how}")
     click.echo(f"Report: {out / 'report.html'}; view: {out / 'diagnosis.rrd'}; updated model: {out / 'model.toml'}")
-
-
-def _design(path: Path | None, recordings: list[Recording]) -> DesignModel:
-    """The design in the recordings' units; without a file the defaults, or identified where the units differ."""
-    from control.design import DesignModel, load_design
-    from hal.errors import BadInput
-    from twin.model_units import in_units_of
-
-    units = {(r.pressure_unit, r.position_unit) for r in recordings}
-    if len(units) > 1:
-        raise BadInput(f"the recordings have different units ({sorted(units)}); give --units so that they agree")
-    pressure_unit, position_unit = units.pop()
-    if path is not None:
-        return in_units_of(load_design(path), pressure_unit, position_unit)
-    if (pressure_unit, position_unit) == ("psi", "in"):
-        return DesignModel()
-    from control.identify import identify
-
-    return identify(recordings).design
