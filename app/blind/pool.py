@@ -6,7 +6,7 @@ import json
 import multiprocessing
 import os
 import signal
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from pathlib import Path
 from typing import Any
@@ -43,7 +43,7 @@ def read_lines(out: Path) -> list[Line]:
 
 def run_all(
     todo: Sequence[Order], out: Path, processes: int = 2, trial: Callable[[Order], Line] = run_trial
-) -> Iterator[Line]:
+) -> Generator[Line, None, None]:
     """Runs the trials, appends every result to OUT/trials.jsonl and yields it. Leave it early and the workers end.
 
     A trial that fails is a result with an `error`, because what breaks the program is a finding about it too.

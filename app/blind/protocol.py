@@ -17,9 +17,12 @@ from hal.errors import BadInput
 
 FILE = "protocol.json"
 _HOUSE = Path(__file__).resolve().parents[2]
-#: What a result depends on, recording and marking included.
+#: What a result depends on, recording and marking included; how results are counted and shown may change.
 _SOURCES = (
-    *(f"{package}/**/*.py" for package in ("app/blind", "control", "hal", "sim_device", "twin")),
+    *(f"app/blind/{name}.py" for name in ("designs", "excite", "mark", "sizes", "strength", "trial")),
+    *(f"{package}/**/*.py" for package in ("control", "hal", "sim_device", "twin")),
+    "app/job.py",
+    "app/session.py",
     "logs/*.py",
     "app/blind/baselines/*.toml",
     "hal/profiles/*.toml",

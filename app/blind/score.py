@@ -38,9 +38,7 @@ def group(lines: Sequence[Line]) -> dict[str, Any]:
         "trials": len(lines),
         "right": rate([right(line) for line in visible]),
         "by_kind": {kind: rate([right(li) for li in visible if kind_of(li) == kind]) for kind in KINDS},
-        "by_stratum": {
-            name: _stratum([li for li in lines if _faulty(li) and li["stratum"] == name]) for name in STRATA
-        },
+        "by_stratum": {name: _stratum(lines, name) for name in STRATA},
         "leading": rate([line["mark"]["leading"] for line in named]),
         "top": {str(k): rate([_among(line, k) for line in named]) for k in (1, 2, 3, 5)},
         "sets": _sets(named),

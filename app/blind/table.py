@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -84,4 +85,4 @@ def _interval(pair: Sequence[float] | None) -> str:
 
 def number(value: float | None) -> str:
     """Three digits, or a dash."""
-    return "-" if value is None or value != value else f"{value:.3g}"
+    return "-" if value is None or math.isnan(value) else f"{value:.3g}"

@@ -24,13 +24,25 @@ CONTROLLER = "if_then_pi"
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """What to do: trial `number`, the valve of `seal` out of one `family`, in a new `folder`."""
+    """What to do: trial `number`, the valve of `seal` out of one `family`, in a new `folder`.
+
+    `share` is the length of the test sequence, 1 being the whole one, gone through `repeats` times.
+    """
 
     number: int
     seal: str
     family: str
     folder: Path
     keep: bool = False
+    share: float = 1.0
+    repeats: int = 2
+
+    @property
+    def plan(self) -> Plan:
+        """The test sequence of this trial."""
+        from app.blind.excite import open_loop
+
+        return open_loop(self.number, self.repeats, self.share)
 
 
 def orders(count: int, seed: int, family: str, out: Path, keep: bool = False) -> list[Order]:
@@ -47,13 +59,13 @@ def run_trial(order: Order) -> dict[str, Any]:
 
     Raises: `BenchFault` when the wire failed, `BadInput` when the commitment does not hold.
     """
-    from app.blind.excite import closed_loop, open_loop
+    from app.blind.excite import closed_loop
 
     if order.folder.exists():
         shutil.rmtree(order.folder)
     order.folder.mkdir(parents=True)
     began = time.monotonic()
-    record = _recorded(order, open_loop(order.number), "record")
+    record = _recorded(order, order.plan, "record")
     fresh = _recorded(order, closed_loop(order.number), "closed-loop", closed=True)
     recorded = time.monotonic()
     outcome = _diagnosed(order, record)
@@ -109,7 +121,7 @@ def _diagnosed(order: Order, record: Recording) -> Outcome:
 
 def _unsealed(order: Order) -> dict[str, Any]:
     """Breaks the seal, which checks the commitment, and marks what the file says."""
-    from app.blind.excite import commands, open_loop
+    from app.blind.excite import commands
     from app.blind.mark import mark
     from app.blind.sizes import check_sizes
     from app.blind.strength import stratum, strength
@@ -118,7 +130,7 @@ def _unsealed(order: Order) -> dict[str, Any]:
     label = unseal(order.folder, order.seal)
     said = json.loads((order.folder / "diagnosis.json").read_text(encoding="utf-8"))
     commitment = json.loads((order.folder / "sealed.json").read_text(encoding="utf-8"))["commitment"]
-    force = strength(label, *commands(open_loop(order.number)))
+    force = strength(label, *commands(order.plan))
     return {
         "trial": order.number,
         "seal": order.seal,

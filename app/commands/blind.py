@@ -90,9 +90,6 @@ def _words(line: dict[str, Any]) -> str:
 
 
 def _report(folder: Path, as_json: bool) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
     from app.blind.table import rows
 
     text = (folder / "scores.json").read_text(encoding="utf-8")
@@ -102,12 +99,10 @@ def _report(folder: Path, as_json: bool) -> None:
     found = json.loads(text)
     groups = found["families"] if len(found["families"]) > 1 else {}
     for name, group in {"all": found["all"], **groups}.items():
-        table = Table(title=f"{name}: {group['trials']} trials; faults below the floor only where they are named")
-        for column in ("", "figure", "95 % interval"):
-            table.add_column(column, no_wrap=True)
-        for row in rows(group):
-            table.add_row(*row)
-        Console().print(table)
+        click.echo()
+        click.echo(f"{name + ', ' + str(group['trials']) + ' trials':52}{'figure':20}95 % interval")
+        for what, figure, interval in rows(group):
+            click.echo(f"{what:52}{figure:20}{interval}".rstrip())
     if found["broken"]:
         click.echo(f"{len(found['broken'])} trials ended in an error: {folder / 'trials.jsonl'}")
     click.echo(f"page: {folder / 'blind.html'}; scores: {folder / 'scores.json'}; trials: {folder / 'trials.jsonl'}")
