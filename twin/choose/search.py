@@ -14,6 +14,7 @@ import numpy as np
 
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.score import Yardstick, make_yardstick
+from twin.choose.screen import make_screen, prospects
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -32,6 +33,7 @@ class SearchRules:
     rounds: int = 6
     polish: int = 8
     threads: int = 2
+    screened: int = 10  # further causes (forms) per hypothesis of the beam that get a full fit
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
 
@@ -75,6 +77,7 @@ class Searcher:
     scales: Scales
     rules: SearchRules = field(default_factory=SearchRules)
     progress: Progress = lambda _what, _share: None
+    tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
 
     def run(self) -> Findings:
         """The whole search."""
@@ -87,7 +90,7 @@ class Searcher:
             best = min(level, key=lambda f: f.mse, default=none)
             if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
                 break
-            level = self._extended(level, found, size)
+            level = self._extended(level, size)
             found += level
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
@@ -98,22 +101,31 @@ class Searcher:
         numbers = number_causes(self.channel)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
+        self.tried[:] = [f for f in fits if len(f.names) == 1]
         fits = best_forms(fits, self.channel.rows)
         return self._polished(fits)
 
-    def _extended(self, level: Sequence[Fit], found: Sequence[Fit], size: int) -> list[Fit]:
-        """Every hypothesis of the beam with one more cause."""
+    def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
+        """Every hypothesis of the beam with one more cause, of those that promise something."""
         singles = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
         fits: list[Fit] = []
         seen: set[tuple[str, ...]] = set()
         for parent in sorted(level, key=lambda f: f.mse)[: self.rules.beam]:
             more = [c for c in singles if c.name not in parent.names and not _same_claim(parent, c)]
             more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
-            known = [parent, *(f for f in found if len(f.names) == 1)]
             todo = [(*parent.space.causes, c) for c in more]
-            fits += self._fit_all(todo, known, self.rules.rounds, f"{size} causes")
+            numbers = [causes for causes in todo if causes[-1].form is None]
+            fits += self._fit_all(numbers, [parent, *self.tried], self.rules.rounds, f"{size} causes")
+            fits += self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
         return self._polished(best_forms(fits, self.channel.rows))
+
+    def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
+        """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""
+        screen = make_screen(self.channel, self.base, parent)
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            best = prospects(screen, todo, self.tried, pool)[: self.rules.screened]
+            return list(pool.map(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), best))
 
     def _polished(self, fits: Sequence[Fit]) -> list[Fit]:
         ranked = sorted(fits, key=lambda f: f.mse)

@@ -1,0 +1,108 @@
+"""Which further causes are worth a full fit: a look at each from where the smaller hypothesis ended.
+
+One simulation per start of the further cause gives the direction in which it moves the residual; what is left of that
+direction once the unknowns of the smaller hypothesis have followed tells how much of the squares the cause could take
+away. Exact where the response is linear in the cause's size, and good enough elsewhere to leave most causes out.
+Source: the score (gradient) test, Rao, Proc. Cambridge Phil. Soc. 44 (1948) 50.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from concurrent.futures import Executor
+from dataclasses import dataclass
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.fit.channel import Channel
+from twin.fit.fitting import Fit, starts_of
+from twin.fit.least_squares import jacobian
+from twin.fit.space import Cause, Space, form_starts, make_space
+from twin.plant import Plant
+
+#: Starts of a form that are looked at besides the one where it ended alone; forms with more have narrow valleys.
+_MOST_STARTS = 9
+#: The size of a cause is taken to be at most so many times that of the start.
+_LARGEST = 5.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prospect:
+    """A hypothesis with the start that promises most, and by how much it would lower the sum of squares."""
+
+    causes: tuple[Cause, ...]
+    space: Space
+    start: FloatArray
+    gain: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Screen:
+    """The smaller hypothesis at its end: unknowns `z`, residuals `r` (channel and prior), what it can still follow."""
+
+    channel: Channel
+    base: Plant
+    space: Space
+    z: FloatArray
+    r: FloatArray
+    basis: FloatArray
+
+    def prospect(self, causes: tuple[Cause, ...], known: Sequence[Fit]) -> Prospect:
+        """The best start of the last of `causes`, which the smaller hypothesis does not have."""
+        space = make_space(self.base, causes, self.space.numbers, self.space.scales)
+        best = Prospect(causes, space, self.z, -1.0)
+        for option in _options(space, known):
+            start = np.concatenate([self.z, option])
+            gain = self._gain(self.channel.residuals(space.plant(start)))
+            if gain > best.gain:
+                best = Prospect(causes, space, start, gain)
+        return best
+
+    def _gain(self, moved: FloatArray) -> float:
+        """How much of the squares the direction toward `moved` could take away; 0 if it leads away."""
+        direction = np.zeros(self.r.size)
+        direction[: moved.size] = moved - self.r[: moved.size]
+        direction -= self.basis @ (self.basis.T @ direction)
+        length = float(direction @ direction)
+        along = -float(self.r @ direction)
+        if length <= 0.0 or along <= 0.0:
+            return 0.0
+        size = min(along / length, _LARGEST)
+        return 2.0 * size * along - size**2 * length
+
+
+def make_screen(channel: Channel, base: Plant, parent: Fit) -> Screen:
+    """Prepares to look beyond `parent`, with all design numbers of the channel as nuisances."""
+    space = make_space(base, parent.space.causes, channel.numbers, parent.space.scales)
+    z = starts_of(space, [parent])[0]
+    spreads = space.spreads
+
+    def residuals(at: FloatArray) -> FloatArray:
+        return np.concatenate([channel.residuals(space.plant(at)), at / spreads])
+
+    r = residuals(z)
+    basis, triangle = np.linalg.qr(jacobian(residuals, z, r, space.steps, space.upper))
+    size = np.abs(np.diag(triangle))
+    basis = basis[:, size > 1e-9 * max(float(size.max(initial=0.0)), 1e-300)]
+    return Screen(channel, base, space, z, r - basis @ (basis.T @ r), basis)
+
+
+def prospects(
+    screen: Screen, todo: Sequence[tuple[Cause, ...]], known: Sequence[Fit], pool: Executor
+) -> list[Prospect]:
+    """All hypotheses of `todo`, the most promising first."""
+    found = pool.map(lambda causes: screen.prospect(causes, known), todo)
+    return sorted(found, key=lambda p: -p.gain)
+
+
+def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:
+    """Values of the last cause's unknowns that are looked at."""
+    last = space.causes[-1]
+    if last.form is None:
+        return []
+    alone = make_space(space.base, (last,), (), space.scales)
+    ended = [f for f in known if [(c.name, c.form) for c in f.space.causes] == [(last.name, last.form)]]
+    options = starts_of(alone, ended) if ended else []
+    own = form_starts(last.form, space.scales) if last.form.starts_for is None else []
+    return options + (own if len(own) <= _MOST_STARTS or not options else [])
