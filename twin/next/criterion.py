@@ -14,6 +14,7 @@ import numpy as np
 from control.experiment import Experiment
 from logs.recording import FloatArray
 from twin.fit.fitting import Fit
+from twin.fit.least_squares import minimise
 from twin.next.rivals import Rival
 from twin.plant import Plant, pressure_response, reading_response, stem_response
 from twin.timegrid import TimeGrid, make_grid
@@ -83,6 +84,22 @@ def distance(a: Rival, b: Rival, bed: Bed, scale: Scale) -> Distance:
     """The distance of two explanations that are re-fitted to the records and the experiment together."""
     hidden = np.hstack([response(one, bed, scale) for one in (a, b)])
     return _distance(_difference(a.plant(), b.plant(), bed, scale), hidden, bed, scale)
+
+
+def refitted(a: Rival, b: Rival, bed: Bed, scale: Scale) -> Distance:
+    """What is left between `a` and `b` when `b` is really fitted to what `a` predicts, held to what the records allow.
+
+    `distance` believes that predictions are linear in the unknowns; this does not.
+    """
+    weight, fit = _weight(bed, scale), b.fit
+    wanted = predict(a.plant(), bed, scale.channel)
+
+    def residuals(z: FloatArray) -> FloatArray:
+        miss = weight * (wanted - predict(b.plant(z), bed, scale.channel))
+        return np.concatenate([miss, np.linalg.solve(b.freedom, z - fit.z)]) if z.size else miss
+
+    best = minimise(residuals, fit.z, fit.space.lower, fit.space.upper, fit.space.steps, rounds=4)
+    return _distance(best.residuals, None, bed, scale)
 
 
 def effect_distance(plain: Rival, with_effect: Plant, hidden: FloatArray, bed: Bed, scale: Scale) -> Distance:

@@ -50,7 +50,7 @@ def propose(
     if not open_ and judgement.causes:
         sure = min(c.probability for c in judgement.causes)
         return Proposal(
-            NextExperiment(f"No further experiment is needed: what is named is sure (at least {sure:.2f}).")
+            NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
         )
     if not judgement.causes:
         return _coverage(result, judgement, tests, rules, limits)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from control.experiment import Experiment
 from twin.next.candidates import LONGEST_S, library, neighbours, repeated
-from twin.next.criterion import Distance, Scale, bound, distance, lay_out
+from twin.next.criterion import Distance, Scale, bound, distance, lay_out, refitted
 from twin.next.limits import Limits
 from twin.next.rivals import Dispute
 
@@ -40,7 +40,8 @@ def best_experiment(dispute: Dispute, scale: Scale, limits: Limits, needed: floa
         known = {one.experiment for one in found}
         more = [n for one in found[:_BEST] for n in neighbours(one.experiment, limits)]
         found = _sorted([*found, *(evaluate(e) for e in dict.fromkeys(more) if e not in known)])
-    return _long_enough(found[0], needed, evaluate)
+    long = [_long_enough(one, needed, evaluate) for one in found[:_BEST]]
+    return _sorted([_verified(one, dispute, scale, limits, needed) for one in long])[0]
 
 
 Evaluate = Callable[[Experiment], Found]
@@ -81,6 +82,14 @@ def _long_enough(one: Found, needed: float, evaluate: Evaluate) -> Found:
     room = int(LONGEST_S // one.experiment.duration_s)
     times = min(int(-(-needed // least)), _MOST_REPEATS, max(room, 1))
     return evaluate(repeated(one.experiment, times)) if times > 1 else one
+
+
+def _verified(one: Found, dispute: Dispute, scale: Scale, limits: Limits, needed: float) -> Found:
+    """The same with each rival really fitted again: the smaller of both distances counts."""
+    bed = lay_out(one.experiment, limits.scale)
+    again = [refitted(dispute.accepted, rival, bed, scale) for rival in dispute.rivals]
+    least = tuple(min(pair, key=lambda d: d.squared) for pair in zip(one.distances, again, strict=True))
+    return Found(one.experiment, least, value_of([d.gain for d in least], needed, one.experiment.duration_s))
 
 
 def _sorted(found: Sequence[Found]) -> list[Found]:

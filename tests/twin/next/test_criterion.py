@@ -9,7 +9,7 @@ from control.experiment_catalog import make_experiment
 from tests.twin.next.two_lags import SIGMA, TRUTH, dispute, fitted, record, recorded, result
 from twin.case import make_case
 from twin.fit.channel import chain_channel
-from twin.next.criterion import Scale, bound, distance, lay_out, predict
+from twin.next.criterion import Scale, bound, distance, lay_out, predict, refitted
 from twin.simulate import Start, simulate_recording
 
 EXPERIMENT = make_experiment("random", {"count": 20, "dwell_max_s": 4.0, "seed": 3})
@@ -35,6 +35,15 @@ def test_refitting_hides_some_of_the_difference_and_never_adds_to_it() -> None:
     free, hidden = bound(a.plant(), b.plant(), bed, SCALE), distance(a, b, bed, SCALE)
     assert 0.0 < hidden.squared < free.squared
     assert hidden.squared == pytest.approx(distance(b, a, bed, SCALE).squared, rel=1e-6)
+
+
+def test_a_rival_that_is_really_fitted_again_comes_as_close_as_the_linear_criterion_says() -> None:
+    found = dispute("dead_time", "sensor_lag")
+    a, b, bed = found.accepted, found.rivals[0], lay_out(EXPERIMENT, 1.0)
+    again = refitted(a, b, bed, SCALE)
+    assert again.squared < bound(a.plant(), b.plant(), bed, SCALE).squared
+    assert again.squared == pytest.approx(distance(a, b, bed, SCALE).squared, rel=0.5)
+    assert refitted(a, a, bed, SCALE).squared == pytest.approx(0.0, abs=1e-9)
 
 
 def test_noise_divides_the_distance_and_correlation_its_worth() -> None:
