@@ -56,6 +56,8 @@ def _line(bench: ModbusBench, period_s: float | None) -> Finding:
 
 
 def _signals(bench: ModbusBench) -> list[Finding]:
+    from hal.sample import Quality
+
     sample = bench.observe()
     readings = {"position": (sample.position, "in"), "pressure": (sample.pressure, "psi")}
     readings |= {
@@ -68,7 +70,9 @@ def _signals(bench: ModbusBench) -> list[Finding]:
         if reading is not None:
             value = None if math.isnan(reading.value) else reading.value
             text = f"{'no value' if value is None else f'{value:.4g} {unit}'} ({quality_text(reading.quality)})"
-            found.append(Finding(name, not reading.quality, text, {"value": value, "unit": unit}))
+            # An unsigned converter cannot show less than nothing: that is where the pressure of a vented valve stands.
+            vented = name == "pressure" and reading.quality == Quality.SATURATED and reading.value <= 0.0
+            found.append(Finding(name, vented or not reading.quality, text, {"value": value, "unit": unit}))
     status = sample.aux.get("watchdog_status")
     if status is not None and status.value != 0:
         text = "the device ignores commands after a timeout or stop; `lostmotion set --acknowledge` lifts that"

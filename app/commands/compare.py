@@ -34,7 +34,7 @@ COLUMNS = (
 @click.option("--seeds", type=click.IntRange(1), default=2, show_default=True, help="Repeats with other chance.")
 @click.option("--period", type=click.FloatRange(0.02, 0.5), default=0.1, show_default=True, help="Tick [s].")
 @click.option("--design", type=click.Path(path_type=Path, dir_okay=False), help="What the controllers know (TOML).")
-@click.option("--processes", type=click.IntRange(1), default=2, show_default=True)
+@click.option("--processes", type=click.IntRange(1), default=2, show_default=True, help="Side by side.")
 @click.option("--detail", default="steady", show_default=True, help="Score shown per scenario.")
 @click.option("--plot", type=click.Path(path_type=Path, dir_okay=False), help="Draw the table (PNG or SVG).")
 @click.option("--json", "as_json", is_flag=True, help="Every trial, for scripts.")

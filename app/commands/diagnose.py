@@ -32,7 +32,11 @@ _WITHOUT_DESIGN = {
 @click.option("--map", "mapping", help="Columns of a foreign file: time=COL,command=COL,pressure=COL,position=COL.")
 @click.option("--units", help="Units of a foreign file: command=kPa,position=mm,time=ms.")
 @click.option(
-    "--command-timing", type=click.Choice(["before", "after", "unknown"]), default="before", show_default=True
+    "--command-timing",
+    type=click.Choice(["before", "after", "unknown"]),
+    default="before",
+    show_default=True,
+    help="Which interval a row's command belongs to.",
 )
 @click.option("--active", is_flag=True, help="Run the experiments that tell most on the bench, until it is sure.")
 @click.option(

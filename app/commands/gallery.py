@@ -8,7 +8,8 @@ import click
 
 
 @click.command(name="gallery")
-@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("docs"), show_default=True)
+@click.option("--out", type=click.Path(path_type=Path, file_okay=False), default=Path("docs"), show_default=True,
+              help="Folder of the page.")  # fmt: skip
 @click.option("--check", is_flag=True, help="Write nothing; fail if the stored numbers are stale.")
 def command(out: Path, check: bool) -> None:
     """Rebuild docs/thesis.md with its pictures, or check that it is not stale. Takes two minutes."""

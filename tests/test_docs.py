@@ -1,0 +1,84 @@
+"""What the pages say is so: links lead somewhere, examples load, verbs and files that they name are there."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import click
+import pytest
+from click.testing import CliRunner
+
+from app.cli import cli
+from hal.profile import load_profile
+
+HOUSE = Path(__file__).resolve().parent.parent
+PAGES = sorted([*HOUSE.glob("*.md"), *HOUSE.glob("docs/**/*.md"), HOUSE / "logs" / "README.md"])
+IDS = [page.relative_to(HOUSE).as_posix() for page in PAGES]
+README = HOUSE / "README.md"
+
+
+def text_of(page: Path) -> str:
+    return page.read_text(encoding="utf-8")
+
+
+def commands_in(page: Path) -> set[tuple[str, ...]]:
+    """Words of every `lostmotion ...` on the page: inline code and blocks alike."""
+    text = re.sub(r"`([^`\n]+)\n([^`\n]+)`", r"`\1 \2`", text_of(page))
+    found = re.findall(r"(?:^ {4}|`|^\$ )(?:\.venv/bin/)?lostmotion ([^`\n#]+)", text, re.MULTILINE)
+    return {tuple(line.split()) for line in found}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=IDS)
+def test_links_and_pictures_lead_somewhere(page) -> None:
+    targets = re.findall(r"\]\(([^)\s]+)\)", text_of(page))
+    local = [target.partition("#")[0] for target in targets if "://" not in target and not target.startswith("#")]
+    assert [target for target in local if not (page.parent / target).exists()] == []
+
+
+@pytest.mark.parametrize("page", PAGES, ids=IDS)
+def test_verbs_and_options_that_it_names_exist(page) -> None:
+    wrong = []
+    root = click.Context(cli)
+    for words in commands_in(page):
+        verb = words[0]
+        if not re.fullmatch(r"[a-z][a-z-]*", verb):
+            continue  # an option of the program itself, or a placeholder
+        command = cli.get_command(root, verb)
+        known = {"--help", "-h"} | {name for p in command.params for name in p.opts} if command else set()
+        used = {word.partition("=")[0] for word in words if word.startswith("--")}
+        if command is None or used - known:
+            wrong.append(" ".join(words))
+    assert wrong == []
+
+
+def test_pictures_are_small() -> None:
+    large = [path.name for path in (HOUSE / "docs" / "pictures").iterdir() if path.stat().st_size > 300_000]
+    assert large == []
+
+
+def test_the_index_lists_every_page() -> None:
+    index = text_of(HOUSE / "docs" / "index.md")
+    pages = [page.relative_to(HOUSE / "docs").as_posix() for page in HOUSE.glob("docs/**/*.md")]
+    assert [page for page in pages if page != "index.md" and f"({page})" not in index] == []
+
+
+def test_the_profile_in_the_readme_is_a_working_bench(tmp_path) -> None:
+    blocks = re.findall(r"```toml\n(.*?)```", text_of(README), re.DOTALL)
+    (mine,) = (block for block in blocks if "[devices." in block)
+    file = tmp_path / "mine.toml"
+    file.write_text(mine, encoding="utf-8")
+    assert load_profile(str(file)).name == "mine"
+    checked = CliRunner().invoke(cli, ["check", "--profile", str(file)], catch_exceptions=False)
+    assert "BAD" not in checked.output
+    assert checked.exit_code == 0
+
+
+def test_the_architecture_page_names_files_that_are_there() -> None:
+    named = set(
+        re.findall(
+            r"`((?:app|twin|control|logs|hal|sim_device)/[\w/]+\.py)`", text_of(HOUSE / "docs" / "architecture.md")
+        )
+    )
+    assert named
+    assert [name for name in named if not (HOUSE / name).is_file()] == []
