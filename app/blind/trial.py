@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from control.design import DesignModel
     from control.plan import Plan
+    from hal.profile import Profile
     from logs.recording import Recording
     from twin.diagnose import Outcome
 
@@ -88,7 +89,7 @@ def _recorded(order: Order, plan: Plan, name: str, closed: bool = False) -> Reco
     from control.drive import ControllerDrive, OpenLoopDrive
     from logs.load import load_recording
 
-    with open_bench(sealed=order.seal, families=(order.family,)) as session:
+    with open_bench(profile=_profile(), sealed=order.seal, families=(order.family,)) as session:
         if closed:
             made = make_controller(CONTROLLER, _baseline(order.family))
             job = Job("run", plan, lambda begun: ControllerDrive(made, plan.period_s, begun), closed_loop=True)
@@ -98,6 +99,16 @@ def _recorded(order: Order, plan: Plan, name: str, closed: bool = False) -> Reco
     if not closed:  # the commitment stays when the samples go
         shutil.copy(folder / "sealed.json", order.folder / "sealed.json")
     return load_recording(folder)
+
+
+def _profile() -> Profile:
+    """The virtual bench with its alarms on the position out of the way: a faulty sensor is what is looked for."""
+    from hal.profile import load_profile
+
+    found = load_profile("virtual")
+    return found.model_copy(
+        update={"limits": found.limits.model_copy(update={"position_min_in": None, "position_max_in": None})}
+    )
 
 
 def _diagnosed(order: Order, record: Recording) -> Outcome:
