@@ -72,7 +72,7 @@ def pursue(
         if is_sure(rounds[-1]):
             return Pursuit("it is sure", outcome, tuple(rounds))
         if text is None:
-            return Pursuit("no experiment with these sensors would tell more", outcome, tuple(rounds))
+            return Pursuit(f"no experiment would tell more. {rounds[-1].next}".strip(), outcome, tuple(rounds))
         if done.count(text):
             return Pursuit("the experiment that it asks for has been made", outcome, tuple(rounds))
         experiment = experiment_of(text)

@@ -9,7 +9,7 @@ from control.experiment import Experiment
 from twin.catalog import effects
 from twin.choose.decide import Decision, DecisionRules
 from twin.diagnosis import EffectTest
-from twin.effect import Form, Scales
+from twin.effect import Form, Parameter, Scales
 from twin.next.candidates import library
 from twin.next.criterion import Scale, effect_distance, lay_out, response
 from twin.next.limits import Limits
@@ -40,7 +40,7 @@ class Coverage:
 
 
 def blind_spots(tests: Sequence[EffectTest], scales: Scales) -> list[BlindSpot]:
-    """Effects that are not testable, or only above the largest of the sizes that a fit starts from."""
+    """Effects that are not testable, or only where they are larger than clear."""
     spots = []
     for test in tests:
         form = effects()[test.name].forms[0]
@@ -59,23 +59,29 @@ def best_coverage(
     channels = [(d, rival_of(result, d, d.findings.retuned, "design")) for d in result.decisions]
     best: Coverage | None = None
     for experiment in sorted(library(limits), key=lambda e: e.duration_s)[:_LOOKED_AT]:
-        gains = _gains(result, experiment, spots, channels, limits)
-        shown = tuple(spot.name for spot, gain in zip(spots, gains, strict=True) if gain >= rules.evidence)
-        value = value_of(gains, rules.evidence, experiment.duration_s)
+        shares = _shares(result, experiment, spots, channels, limits, rules)
+        shown = tuple(spot.name for spot, share in zip(spots, shares, strict=True) if share >= 1.0)
+        value = value_of(shares, 1.0, experiment.duration_s)
         if shown and (best is None or value > best.value):
             best = Coverage(experiment, shown, value)
     return best
 
 
-def _gains(
+def _shares(
     result: StageResult,
     experiment: Experiment,
     spots: Sequence[BlindSpot],
     channels: Sequence[tuple[Decision, Rival]],
     limits: Limits,
+    rules: DecisionRules,
 ) -> list[float]:
+    """How much of what a decision asks for each blind spot would bring, 1 is enough; in the order of the spots.
+
+    A cause must be significant, and material over all records together.
+    """
     bed = lay_out(experiment, limits.scale)
-    gains = dict.fromkeys((spot.name for spot in spots), 0.0)
+    shares = dict.fromkeys((spot.name for spot in spots), 0.0)
+    known_s = sum(r.duration_s for r in result.case.recordings)
     for decision, design in channels:
         channel = decision.findings.channel
         mine = [spot for spot in spots if effects()[spot.name].stage in channel.stages]
@@ -87,19 +93,27 @@ def _gains(
         hidden, plain = response(design, bed, scale), design.plant()
         for spot in mine:
             changed = Plant(plain.design, (*plain.inserted, spot.inserted))
-            gains[spot.name] = effect_distance(design, changed, hidden, bed, scale).gain
-    return [gains[spot.name] for spot in spots]
+            far = effect_distance(design, changed, hidden, bed, scale)
+            material = rules.gain * (far.worth + known_s / scale.independent_s)
+            shares[spot.name] = min(far.gain / rules.evidence, far.squared / material)
+    return [shares[spot.name] for spot in spots]
 
 
 def _clear(form: Form, scales: Scales) -> tuple[float, ...]:
-    """Values of a clear effect: the largest start of each size."""
-    return tuple(
-        (max(p.starts, key=lambda s: abs(s - p.neutral)) if p.size else p.starts[0]) * scales.factor(p.kind)
-        for p in form.parameters
-    )
+    """Values of a clear effect; shape parameters at their first start."""
+    return tuple((_clear_size(p) if p.size else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
+
+
+def _clear_size(p: Parameter) -> float:
+    """Half of a large effect, on the side of the starts; the mildest start where they lie far from neutral."""
+    nearest = min(p.starts, key=lambda s: abs(s - p.neutral))
+    if abs(nearest - p.neutral) > p.scale:
+        return nearest
+    side = 1.0 if max(p.starts) > p.neutral else -1.0
+    return min(max(p.neutral + 0.5 * side * p.scale, p.lower), p.upper)
 
 
 def _beyond(form: Form, main: int, test: EffectTest, scales: Scales) -> bool:
     p = form.parameters[main]
-    clear = max(abs(s - p.neutral) for s in p.starts) * scales.factor(p.kind)
+    clear = abs(_clear_size(p) - p.neutral) * scales.factor(p.kind)
     return test.detection_limit is not None and test.detection_limit > clear

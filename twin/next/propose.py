@@ -102,7 +102,7 @@ def _coverage(
     found = best_coverage(result, spots, rules, limits)
     if found is None:
         names = ", ".join(_plain(spot.name) for spot in spots)
-        return Proposal(NextExperiment(f"{start}No experiment of the library would show {names} with these sensors."))
+        return Proposal(NextExperiment(f"{start}No experiment of the library would show {names} of a clear size."))
     experiment = rounded(found.experiment)
     why = (
         f"{start}It would show {', '.join(_plain(n) for n in found.shown)}, which these records could not, in "
