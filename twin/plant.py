@@ -29,8 +29,6 @@ from twin.slots import (
     S_SWING,
     S_TRAVEL,
     S_ZERO,
-    V_CREEP1,
-    V_CREEP2,
     V_HIGH,
     V_LOW,
     V_RATE_CLOSE,
@@ -41,7 +39,6 @@ from twin.slots import (
 from twin.timegrid import TimeGrid
 
 _TABLE = 1025
-_LATE = [V_CREEP1, V_CREEP2]
 _MEMORY = [S_DRIFT_RATE, S_DRIFT_AMP, S_PLAY]
 
 
@@ -160,5 +157,5 @@ def stems_at(c: Coefficients, reading: FloatArray) -> FloatArray:
 
 
 def remembers(c: Coefficients) -> bool:
-    """Whether the reading of a stem at rest depends on more than where it stands: creep, lost motion, drift, a hold."""
-    return bool(c.valve[_LATE].any() or c.sensor[_MEMORY].any())
+    """Whether the reading of a stem at rest depends on more than where it stands: lost motion, drift."""
+    return bool(c.sensor[_MEMORY].any())

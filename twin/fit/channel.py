@@ -61,8 +61,10 @@ def _told(c: Coefficients, trial: Trial, rests: Rests, pressure: FloatArray, sta
     reading = reading_response(c, trial.grid, stem)
     if not remembers(c):
         return reading
-    # What lies between stem and reading beyond a static curve (creep, lost motion, drift) is as the first pass has it.
-    stands = stands + stem[marks] - stems_at(c, reading[rests.rows])
+    # What lies between stem and reading beyond a static curve (lost motion, drift) is as the first pass has it
+    # one row earlier, where the stem has come by itself.
+    before = rests.rows - 1
+    stands = stands + stem[trial.grid.offsets[before]] - stems_at(c, reading[before])
     stem = stem_response(c, trial.grid, pressure, *start, (marks, stands))
     return reading_response(c, trial.grid, stem)
 

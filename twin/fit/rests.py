@@ -28,7 +28,7 @@ _MOVE_SIGMAS = 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rests:
-    """The ends of the rests: `rows` (int64, rising) and the mean `reading` of the stretch around each, shape (m,)."""
+    """First and last of each rest: `rows` (int64, rising) and the mean `reading` around each; shape (m,)."""
 
     rows: npt.NDArray[np.int64]
     reading: FloatArray
@@ -37,7 +37,7 @@ class Rests:
 def find_rests(
     time_s: FloatArray, reading: FloatArray, use: npt.NDArray[np.bool_], sigma: float, memory: float, travel: float
 ) -> Rests:
-    """The last resting stretch before each move.
+    """Where the stem has come to rest after each move, and where it rests last before the next.
 
     `use` marks trustworthy readings, `sigma` is their noise, `memory` how many samples of it are worth one.
     """
@@ -55,18 +55,27 @@ def find_rests(
     still &= uniform_filter1d(use.astype(np.float64), width) > 0.9
     still &= _even(time_s, width, period)
     still[: half + 1] = still[-half - 1 :] = False
-    ends = np.flatnonzero(still & ~np.append(still[1:], False))
-    kept = _before_moves(mean[ends], _MOVE_SIGMAS * sigma)
-    return Rests(ends[kept].astype(np.int64), mean[ends[kept]])
+    first = still & ~np.concatenate([[False], still[:-1]])
+    last = still & ~np.append(still[1:], False)
+    rows = np.flatnonzero(first | last)
+    kept = _first_and_last(mean[rows], _MOVE_SIGMAS * sigma, sigma)
+    return Rests(rows[kept].astype(np.int64), mean[rows[kept]])
 
 
-def _before_moves(level: FloatArray, least: float) -> npt.NDArray[np.int64]:
-    """Of neighbouring rests no further apart than `least` the last: in between was noise, or the end of a settling."""
+def _first_and_last(level: FloatArray, move: float, same: float) -> list[int]:
+    """Of each group of neighbouring `level`s no further apart than `move` the last, and the first that is the `same`.
+
+    Within a group there was noise only, or the end of a settling, which is no rest yet.
+    """
     kept: list[int] = []
-    for i in range(level.size - 1, -1, -1):
-        if not kept or abs(level[i] - level[kept[-1]]) > least:
-            kept.append(i)
-    return np.array(kept[::-1], dtype=np.int64)
+    stop = level.size
+    while stop > 0:
+        last = stop - 1
+        while stop > 0 and abs(level[stop - 1] - level[last]) <= move:
+            stop -= 1
+        near = stop + np.flatnonzero(np.abs(level[stop : last + 1] - level[last]) <= same)
+        kept += [last] if near[0] == last else [last, int(near[0])]
+    return kept[::-1]
 
 
 def _lines(y: FloatArray, width: int) -> tuple[FloatArray, FloatArray, FloatArray]:

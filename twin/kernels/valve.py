@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.coupled import coupled_pass
+from twin.kernels.coupled import Plays, Tables, coupled_pass
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import NO_RESTS, Rests, plain_play, play_target
 from twin.kernels.stem import stem_pass
@@ -72,18 +72,40 @@ def valve_kernel(
     force = _force(time_s, offsets, pressure, c, w0)
     widening = _widening(time_s, offsets, c)
     tables = (float(p_first), float(p_step), closing, opening)
-    stem_low, stem_high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
+    plays, start = (spreads, weights), (float(x0), float(w0))
+    _stem(time_s, offsets, force, widening, c, tables, plays, start, rests, out)
+    if rests[0].size and c[[share for share, _ in _CREEPS]].any():
+        # The positions are those of the creeping stem; what it lacks there is as the first pass has it just before.
+        crept = out.copy()
+        _creep(time_s, offsets, c, crept)
+        lacks = (out - crept)[np.maximum(rests[0] - 1, 0)]
+        _stem(time_s, offsets, force, widening, c, tables, plays, start, (rests[0], rests[1] + lacks), out)
+    _creep(time_s, offsets, c, out)
+
+
+def _stem(
+    time_s: FloatArray,
+    offsets: np.ndarray,
+    force: FloatArray,
+    widening: FloatArray,
+    c: FloatArray,
+    tables: Tables,
+    plays: Plays,
+    start: tuple[float, float],
+    rests: Rests,
+    out: FloatArray,
+) -> None:
+    """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
+    low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
     # elements and a second lag have their own states, which only the joint loop can set together
-    if c[_COUPLING].any() or (rests[0].size and (spreads.size > 1 or c[V_TAU_AFTER_S] > 0.0)):
-        stops = np.array([c[V_LOW], c[V_HIGH], stem_low, stem_high])
-        plays, start = (spreads, weights), (float(x0), float(w0))
+    if c[_COUPLING].any() or (rests[0].size and (plays[0].size > 1 or c[V_TAU_AFTER_S] > 0.0)):
+        stops = np.array([c[V_LOW], c[V_HIGH], low, high])
         coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, start, *rests, out)
     else:
-        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, spreads, weights, w0, rests)
+        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1], rests)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
-        stem_pass(time_s, offsets, target, lags_s, rates, stem_low, stem_high, x0, *rests, out)
-    _creep(time_s, offsets, c, out)
+        stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], *rests, out)
 
 
 def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:

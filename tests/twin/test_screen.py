@@ -1,0 +1,61 @@
+"""The look at further causes picks the one that is there, and costs one simulation per start."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+
+from control.design import DesignModel
+from tests.twin.test_rests import DESIGN, SIGMA, staircase, trial_of
+from twin.catalog import effect
+from twin.choose.screen import make_screen, prospects
+from twin.effect import Scales
+from twin.fit.channel import Channel, position_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import Cause, make_space
+from twin.plant import Inserted, Plant
+
+
+def cause(name: str, form: str) -> Cause:
+    return Cause(name, effect(name), effect(name).form(form))
+
+
+def channel_with(*effects: Inserted) -> Channel:
+    trial, _ = trial_of(Plant(DESIGN, effects), staircase())
+    return position_channel([trial], SIGMA)
+
+
+def test_the_missing_cause_comes_first() -> None:
+    damping = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (0.15,))
+    bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
+    channel = channel_with(damping, bow)
+    base, scales = Plant(DesignModel()), Scales()
+    known = cause("asymmetric_damping", "two_lags")
+    space = make_space(base, (known,), channel.numbers, scales)
+    parent = fit(channel, space, starts_of(space))
+    rivals = [
+        cause("lvdt_nonlinearity", "bow"),
+        cause("lvdt_drift", "linear"),
+        cause("linkage_lost_motion", "play"),
+        cause("friction_drift", "linear"),
+        cause("sensor_lag", "first_order"),
+    ]
+    screen = make_screen(channel, base, parent)
+    with ThreadPoolExecutor(1) as pool:
+        found = prospects(screen, [(known, rival) for rival in rivals], [], pool)
+    assert found[0].causes[-1].name == "lvdt_nonlinearity"
+    full = fit(channel, found[0].space, [found[0].start])
+    assert full.mse < 1.2
+    # the look promises about what the fit then gets, and that nothing else would
+    assert found[0].gain / channel.rows > 0.5 * (parent.mse - full.mse)
+    assert found[-1].gain < 0.5 * found[0].gain
+
+
+def test_nothing_is_promised_where_nothing_is_missing() -> None:
+    channel = channel_with()
+    base = Plant(DesignModel())
+    empty = make_space(base, (), (), Scales())
+    screen = make_screen(channel, base, fit(channel, empty, [np.zeros(0)]))
+    one = screen.prospect((cause("lvdt_drift", "linear"),), [])
+    assert 0.0 <= one.gain < 20.0  # of some four thousand squares

@@ -1,0 +1,65 @@
+"""Stiction's forms that act on the target: sticking, reversing, growing at rest, and nothing beyond the stops."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.catalog import effect
+from twin.plant import Inserted, Plant, stem_response
+from twin.timegrid import make_grid
+
+DESIGN = DesignModel()
+K = DESIGN.compliance
+MIDDLE = DESIGN.a1 + 0.25 / K  # closes to 0.25 in
+
+
+def stem(form: str, values: tuple[float, ...], pressure: FloatArray, x0: float) -> FloatArray:
+    """The stem at 0.05 s under a pressure given there."""
+    plant = Plant(DESIGN, (Inserted("stiction", effect("stiction").form(form), values),))
+    grid = make_grid(np.arange(pressure.size) * 0.05, 0.05)
+    return stem_response(plant.coefficients(float(grid.time_s[-1])), grid, pressure, x0, x0)
+
+
+def levels(*each: tuple[float, float]) -> FloatArray:
+    """(pressure, seconds) held one after the other."""
+    return np.concatenate([np.full(round(seconds / 0.05), pressure) for pressure, seconds in each])
+
+
+def test_a_further_step_short_of_the_breakaway_moves_nothing() -> None:
+    held = stem("target_sticks", (0.3, 4e-3), levels((MIDDLE, 40.0), (MIDDLE + 0.25, 40.0)), 0.0)
+    assert abs(held[-1] - 0.25) < 1e-4
+    moved = stem("target_sticks", (0.3, 4e-3), levels((MIDDLE, 40.0), (MIDDLE + 0.35, 40.0)), 0.0)
+    assert abs(moved[-1] - (0.25 + 0.35 * K)) < 1e-4
+
+
+def test_a_moving_stem_breaks_away_again_before_it_reverses() -> None:
+    """While the stem is still on its way open the pressure asks for a little closing: too little to turn it round."""
+    opened = DESIGN.a2 + 0.1 / K
+    back = DESIGN.a1 + 0.12 / K
+    pressure = levels((opened, 3.0), (back, 60.0))
+    for form, values in (("slip_until_slow", (0.3, 2e-4)), ("target_sticks", (0.3, 4e-3))):
+        assert abs(stem(form, values, pressure, 0.4)[-1] - 0.1) < 1e-3
+        weaker = (0.05, *values[1:])
+        assert abs(stem(form, weaker, pressure, 0.4)[-1] - 0.12) < 1e-3
+
+
+def test_what_the_stops_keep_it_from_does_not_pull() -> None:
+    near = DESIGN.a2 + 0.02 / K
+    pressure = levels((near, 40.0), (DESIGN.a2 - 2.0, 40.0))
+    assert abs(stem("target_sticks", (0.3, 4e-3), pressure, 0.3)[-1] - 0.02) < 1e-3
+    assert stem("slip_until_slow", (0.3, 2e-4), pressure, 0.3)[-1] < 1e-3
+
+
+def test_the_breakaway_grows_at_rest() -> None:
+    def after(rest_s: float) -> float:
+        pressure = levels((MIDDLE, rest_s), (MIDDLE + 0.2, 40.0))
+        return float(stem("grows_at_rest", (0.3, 10.0), pressure, 0.25)[-1])
+
+    first = levels((MIDDLE - 1.0, 5.0))
+    assert first.size == 100
+    assert abs(after(60.0) - 0.25) < 1e-4  # at rest since ever: all of 0.3 psi is there
+    pressure = levels((MIDDLE - 1.0, 0.5), (MIDDLE, 3.0), (MIDDLE + 0.2, 40.0))
+    young = float(stem("grows_at_rest", (0.3, 10.0), pressure, 0.05)[-1])
+    assert abs(young - (0.25 + 0.2 * K)) < 2e-3  # after 3 s only 0.08 psi
