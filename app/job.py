@@ -65,15 +65,12 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     from logs.writer import RunWriter
     from sim_device.sealed import write as write_commitment
 
-    info = session.bench.info
     _check_watchdogs(session, job.plan.period_s)
-    columns = columns_of(info, closed_loop=job.closed_loop, aux_units=session.aux_units)
-    if job.beside is not None:
-        columns |= job.beside.columns
-    start = _start(session, job)
+    columns = columns_of(session.bench.info, closed_loop=job.closed_loop, aux_units=session.aux_units)
+    columns |= job.beside.columns if job.beside is not None else {}
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
-        record = stack.enter_context(RunWriter.create(out, start, columns))
+        record = stack.enter_context(RunWriter.create(out, _start(session, job), columns))
         if session.sealed is not None:
             write_commitment(record.folder, session.sealed)
         view = _open_view(record, columns) if live else None
@@ -84,8 +81,7 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
         stack.callback(notes.close)
         hooks = Hooks(progress=display.show, notes=notes, check=stop.check)
         sinks: tuple[Sink, ...] = (record,) if view is None else (record, view)
-        if job.beside is not None:
-            sinks = (job.beside.around(sinks),)
+        sinks = sinks if job.beside is None else (job.beside.around(sinks),)
         loop = Loop(session.bench, session.clock, sinks, hooks, aux=tuple(session.aux_units))
         begun = session.command_in_force
         try:
