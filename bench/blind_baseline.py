@@ -31,8 +31,8 @@ from twin.stages import combined, judge
 FAMILY = "reference"
 SEED, FRESH = 101, (102, 103, 104)
 COMMENT = "The healthy reference valve as a design model, friction in motion; made by bench/blind_baseline.py."
-MARGIN = """# RMS by which the healthy reference valve departs from reference.toml, on seeds that the fit has not seen and
-# without noise; made by bench/blind_baseline.py. A blind trial finds "no gap" when nothing stands out beyond this.
+MARGIN = """# RMS by which the healthy reference valve departs from reference.toml, on seeds that the fit has not seen
+# and without noise; made by bench/blind_baseline.py. A blind trial finds "no gap" when nothing stands out beyond this.
 pressure_psi = {pressure}
 position_in = {position}
 """
