@@ -1,4 +1,4 @@
-"""What the verbs that fit models share: several records of one valve opened together, and the design they are held to."""
+"""What the verbs that fit models share: records of one valve opened together, and the design they are held to."""
 
 from __future__ import annotations
 
@@ -54,9 +54,10 @@ def design_for(path: Path | None, recordings: Sequence[Recording]) -> tuple[Desi
 
 def _identified(recordings: Sequence[Recording], pressure_unit: str, position_unit: str) -> DesignModel:
     from control.identify import identify
+    from twin.tuned import tuned_to
 
     try:
-        return identify(recordings).design
+        return tuned_to(recordings, identify(recordings).design)
     except (BadInput, JobFailed) as error:
         raise type(error)(
             f"without --design the design is identified from the record, and that failed: {error}; give the design "

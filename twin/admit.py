@@ -96,17 +96,17 @@ def _reach(values: FloatArray) -> float:
 
 
 def _refuse_still(recordings: Sequence[Recording], motions: Sequence[_Motion], plant: Plant, names: str) -> None:
+    if max(float(np.ptp(r.command)) for r in recordings) <= 0.0:
+        raise BadInput(
+            f"{names}: nothing moves, neither command nor position, so nothing can be said of the valve; record a "
+            "sweep, for example `lostmotion sweep nested`"
+        )
     expected = max(m.predicted for m in motions)
     if expected > PREDICTED * plant.design.travel:
         share = 100.0 * expected / plant.design.travel
         raise BadInput(
             f"{names}: the position never leaves its noise while the command should move it by {share:.0f} % of "
             "travel; the stem is stuck, the position sensor is not read, or --map names the wrong column"
-        )
-    if max(float(np.ptp(r.command)) for r in recordings) <= 0.0:
-        raise BadInput(
-            f"{names}: nothing moves, neither command nor position, so nothing can be said of the valve; record a "
-            "sweep, for example `lostmotion sweep nested`"
         )
 
 
@@ -122,8 +122,8 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
             f"check the column (--map position=...) and its unit (--units position=mm)"
         )
     closed = d.a1 + d.travel / d.compliance
-    low, high = np.percentile(np.concatenate([r.command for r in recordings]), (5.0, 95.0))
-    if low > _ABSURD * closed > 0.0 or high < d.a2 / _ABSURD:
+    low, middle, high = np.percentile(np.concatenate([r.command for r in recordings]), (5.0, 50.0, 95.0))
+    if middle > _ABSURD * closed > 0.0 or high < d.a2 / _ABSURD:
         raise BadInput(
             f"{names}: commands of {low:.3g} to {high:.3g} {p} do not belong to curves between {d.a2:.3g} and "
             f"{closed:.3g} {p}; check the column (--map command=...) and its unit (--units command=kPa)"

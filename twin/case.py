@@ -116,5 +116,7 @@ def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None)
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:
     """Step of the fine grid [s]: short against the lags, but no more than about 4,000,000 steps in all."""
-    wanted = min(0.1, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, 0.01))
+    # a lag far shorter than the sampling period cannot be told from a jump: no finer than a twentieth of the period
+    shortest = max(0.01, min(0.05, recording.period_s / 20.0))
+    wanted = min(0.1, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, shortest))
     return max(wanted, recording.duration_s / 4_000_000.0)

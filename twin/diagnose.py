@@ -20,9 +20,8 @@ from twin.closed_loop import closed_loop
 from twin.closure import gap
 from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
-from twin.fit.channel import chain_channel, predict_reading
-from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import ACCUSED_SPREAD, make_space
+from twin.fit.channel import predict_reading
+from twin.fit.fitting import Fit
 from twin.gap import GapParts, heldout_parts
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
@@ -34,6 +33,7 @@ from twin.stages import StageResult, judge
 from twin.statement import statement
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
+from twin.tuned import retuned_fit
 from twin.verdict import Judgement, pronounce
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
@@ -99,7 +99,7 @@ def diagnose(
     judgement: Judgement | None = None
     try:
         result = judge(look, settings.search, settings.rules, stage.told(progress))
-        retuned = _retuned(look)
+        retuned = retuned_fit(look)
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
         ep_share = where.stage["ep"].value if where.stage else 0.0
@@ -117,13 +117,6 @@ def diagnose(
     model, units = _model(final, case)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
-
-
-def _retuned(case: Case) -> Fit:
-    """Only the design's own numbers, fitted to the whole chain."""
-    channel = chain_channel(case.trials, case.sigma_y)
-    space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
-    return fit(channel, space, starts_of(space), rounds=20)
 
 
 def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, sensing: Sensing) -> Plant:

@@ -24,12 +24,12 @@ from twin.timegrid import make_grid
 Rows = npt.NDArray[np.int64]
 
 #: Above this many rows, or seconds, a look is taken; it has about so many.
-MOST_ROWS = 40_000
-LOOK_ROWS = 30_000
-MOST_S = 12_000.0
-LOOK_S = 6_000.0
+MOST_ROWS = 20_000
+LOOK_ROWS = 12_000
+MOST_S = 2_400.0
+LOOK_S = 1_200.0
 #: Windows are about so long [s], and each is the liveliest of so many in its part of the record.
-_WINDOW_S = 1_000.0
+_WINDOW_S = 300.0
 _CHOICES = 8
 _JUMP = 0.005  # share of the command's span that is a jump
 

@@ -1,0 +1,36 @@
+"""A design made to fit records as well as its own numbers can, for when the records are all that is known of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from control.design import DesignModel
+from logs.recording import Recording
+from twin.case import Case, make_case
+from twin.fit.channel import chain_channel
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import ACCUSED_SPREAD, make_space
+from twin.noise.model import estimate_noise
+from twin.pieces import cut_at_holes
+from twin.sensing import sense
+from twin.thin import look_at
+
+
+def retuned_fit(case: Case) -> Fit:
+    """Only the design's own numbers, fitted to the whole chain."""
+    channel = chain_channel(case.trials, case.sigma_y)
+    space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
+    return fit(channel, space, starts_of(space), rounds=20)
+
+
+def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignModel:
+    """`design`, in the recordings' units, with all its numbers fitted to them.
+
+    What is identified stage by stage leaves the lag of a converter whose pressure nobody measured at its default; held
+    against such a design, the default itself would be found at fault.
+    """
+    pieces, _ = cut_at_holes(recordings)
+    noise = estimate_noise(pieces)
+    sensing = sense(pieces, noise, design.travel, design.rate_limit)
+    look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.step))
+    return retuned_fit(look).plant.design
