@@ -1,0 +1,104 @@
+"""The look at a large case: which rows stay, what command they carry, and that the model cannot tell the difference."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import Recording
+from tests.twin.toy_valve import Toy, record, staircase
+from twin import thin
+from twin.case import Case, make_case
+from twin.heldout import predict_heldout
+from twin.simulate import simulate_recording
+from twin.thin import kept_rows, look_at, thinned
+
+
+@pytest.fixture(scope="module")
+def toy() -> Recording:
+    levels = np.random.default_rng(1).uniform(5.0, 12.0, 30).tolist()
+    return record(Toy(), staircase(0.05, 10.0, levels), 0.05, seed=1, sigma=8e-4)
+
+
+def look(case: Case, monkeypatch: pytest.MonkeyPatch, most_rows: int = 1000, most_s: float = 1e9) -> Case:
+    monkeypatch.setattr(thin, "MOST_ROWS", most_rows)
+    monkeypatch.setattr(thin, "LOOK_ROWS", most_rows)
+    monkeypatch.setattr(thin, "MOST_S", most_s)
+    monkeypatch.setattr(thin, "LOOK_S", 100.0)
+    monkeypatch.setattr(thin, "_WINDOW_S", 50.0)
+    return look_at(case)[0]
+
+
+def test_ends_and_both_sides_of_every_jump_stay() -> None:
+    command = np.repeat([5.0, 9.0, 7.0, 7.0, 11.0], 200)
+    rows = kept_rows(command, 100)
+    assert {0, 199, 200, 399, 400, 799, 800, 999} <= set(rows.tolist())
+    assert 60 < rows.size <= 110
+
+
+def test_a_command_that_always_moves_is_thinned_all_the_same() -> None:
+    rows = kept_rows(np.cumsum(np.random.default_rng(0).standard_normal(10_000)), 500)
+    assert rows.size <= 800
+
+
+def test_a_short_record_is_left_alone(toy: Recording) -> None:
+    case = make_case([toy], DesignModel())
+    seen, notes = look_at(case)
+    assert seen is case
+    assert notes == []
+
+
+def test_the_model_predicts_the_same_at_the_rows_that_stay(toy: Recording) -> None:
+    rows = kept_rows(toy.command, 600)
+    few = thinned(toy, rows)
+    every = simulate_recording(DesignModel(), toy)[1]
+    assert few.n < 0.15 * toy.n
+    later = few.time_s > 40.0  # the start is told from other readings
+    assert simulate_recording(DesignModel(), few)[1][later] == pytest.approx(every[rows][later], abs=5e-5)
+
+
+def test_a_ramp_keeps_its_mean() -> None:
+    time_s = np.arange(0.0, 10.0, 0.1)
+    ramp = Recording("ramp", time_s, time_s.copy(), np.zeros(100))
+    few = thinned(ramp, np.array([0, 10, 40, 99]))
+    assert few.command[1:] == pytest.approx([0.55, 2.55, 7.0])
+
+
+def test_a_gap_among_the_rows_left_out_is_remembered() -> None:
+    gaps = np.zeros(10, dtype=bool)
+    gaps[4] = True
+    recording = Recording("gap", np.arange(10.0), np.zeros(10), np.zeros(10), gap_before=gaps)
+    marked = thinned(recording, np.array([0, 3, 6, 9])).gap_before
+    assert marked is not None
+    assert marked.tolist() == [False, False, True, False]
+
+
+def test_false_readings_stay_out(toy: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    bad = np.zeros(toy.n, dtype=bool)
+    bad[::2] = True
+    seen = look(make_case([toy], DesignModel(), (), [bad]), monkeypatch)
+    rows = np.searchsorted(toy.time_s, seen.recordings[0].time_s)
+    assert not (seen.trials[0].use_y & bad[rows]).any()
+
+
+def test_windows_are_spread_and_lively(toy: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    calm = replace(toy, position=np.where(toy.time_s < 100.0, 0.2, toy.position))
+    seen = look(make_case([calm], DesignModel()), monkeypatch, most_s=200.0)
+    starts = [s.start for s in seen.spans]
+    assert len(starts) > 1
+    assert starts == sorted(starts)
+    assert sum(r.duration_s for r in seen.recordings) < 0.95 * calm.duration_s
+    assert seen.whole is not None
+
+
+@pytest.mark.parametrize("most_s", [1e9, 200.0])
+def test_held_out_errors_cover_all_rows(toy: Recording, monkeypatch: pytest.MonkeyPatch, most_s: float) -> None:
+    case = make_case([toy], DesignModel())
+    seen = look(case, monkeypatch, most_s=most_s)
+    error = predict_heldout(seen, seen.base, [], [])
+    assert error.shape == (toy.n,)
+    assert np.isfinite(error[case.trials[0].use_y]).all()
+    assert error == pytest.approx(predict_heldout(case, case.base, [], []), nan_ok=True)

@@ -1,0 +1,20 @@
+"""A design fitted to the records: numbers near the truth even from far off."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from tests.twin.toy_valve import Toy, record, staircase
+from twin.tuned import tuned_to
+
+
+def test_numbers_come_back_from_a_design_that_never_moves() -> None:
+    levels = np.random.default_rng(1).uniform(5.0, 12.0, 25).tolist()
+    toy = replace(record(Toy(), staircase(0.05, 8.0, levels), 0.05, seed=1, sigma=8e-4), pressure=None)
+    found = tuned_to([toy], replace(DesignModel(), a1=13.78))
+    assert (found.a1, found.a2, found.compliance) == pytest.approx((8.78, 5.82, 0.19), rel=0.01)
+    assert found.tau_s == pytest.approx(2.7, rel=0.03)
