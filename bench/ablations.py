@@ -130,14 +130,14 @@ def run(name: str, cases: list[Label], folder: Path, processes: int) -> list[dic
     return [line for line in lines if line["case"] < len(cases)]
 
 
-def _table(name: str, lines: list[dict[str, Any]]) -> None:
-    """A row: right, first cause true, false cause on a healthy valve, and trials that broke."""
+def row(name: str, lines: list[dict[str, Any]]) -> list[str]:
+    """Its name, all right, first cause true, false cause on a healthy valve, and how many trials broke."""
     whole = [line for line in lines if "error" not in line]
     seen = [li for li in whole if li["label"]["kind"] == "none" or li["ratio"] >= 1.0]
     known = [li["mark"]["leading"] for li in seen if li["label"]["kind"] not in ("none", "outsider")]
     false = [bool(line["causes"]) for line in whole if line["label"]["kind"] == "none"]
-    cells = (_rate([li["mark"]["right"] for li in seen]), _rate(known), _rate(false), str(len(lines) - len(whole)))
-    print(f"{name:20}" + "".join(f"{cell:30}" for cell in cells), flush=True)
+    rights = [li["mark"]["right"] for li in seen]
+    return [name, _rate(rights), _rate(known), _rate(false), str(len(lines) - len(whole))]
 
 
 def _rate(marks: list[bool]) -> str:
@@ -157,11 +157,11 @@ def main() -> None:
         os.environ.setdefault(name, "1")
     asked.out.mkdir(parents=True, exist_ok=True)
     cases = labels(asked.cases, asked.seed, "thesis")
-    print(
-        f"{'':20}" + "".join(f"{word:30}" for word in ("all right", "first cause true", "false on healthy", "broken"))
-    )
+    heads = ("", "all right", "first cause true", "false on healthy", "broken")
+    print("".join(f"{head:26}" for head in heads).rstrip())
     for name in asked.only or list(ABLATIONS):
-        _table(name, run(name, cases, asked.out, asked.processes))
+        cells = row(name, run(name, cases, asked.out, asked.processes))
+        print("".join(f"{cell:26}" for cell in cells).rstrip(), flush=True)
 
 
 if __name__ == "__main__":
