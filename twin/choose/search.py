@@ -33,7 +33,7 @@ class SearchRules:
     rounds: int = 6
     polish: int = 8
     threads: int = 2
-    screened: int = 10  # further causes (forms) per hypothesis of the beam that get a full fit
+    screened: int = 6  # further causes (forms) per hypothesis of the beam that get a full fit
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
 
