@@ -23,11 +23,12 @@ LONG_FUNCTIONS = {
     "app/commands/compare.py:command",
     "app/commands/jog.py:command",
     "app/commands/set.py:command",
-    "app/job.py:perform",
     "app/session.py:open_bench",
     "tests/twin/report_example.py:diagnosis",
+    "twin/diagnose.py:diagnose",
     "twin/kernels/coupled.py:coupled_pass",
     "twin/kernels/stem.py:stem_pass",
+    "twin/partial.py:known_so_far",
     "twin/where/smoother.py:smooth_pressure",
 }
 
