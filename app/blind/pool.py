@@ -8,11 +8,12 @@ import os
 import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
 from app.blind.trial import Order, run_trial
-from hal.errors import BadInput
+from hal.errors import BadInput, JobFailed
 
 Line = dict[str, Any]
 RESULTS = "trials.jsonl"
@@ -62,8 +63,9 @@ def run_all(
                 yield line
         finally:
             pool.shutdown(wait=False, cancel_futures=True)
+            # A run that records takes a signal as the wish to stop *it*; its valve is virtual, so it can just end.
             for child in multiprocessing.active_children():
-                child.terminate()
+                child.kill()
 
 
 def _finished(jobs: dict[Future[Line], Order]) -> Iterator[Line]:
@@ -74,6 +76,10 @@ def _finished(jobs: dict[Future[Line], Order]) -> Iterator[Line]:
             error = job.exception()
             if error is None:
                 yield job.result()
+            elif isinstance(error, BrokenProcessPool):
+                raise JobFailed("a worker was killed, for want of memory perhaps; give the command again") from error
+            elif not isinstance(error, Exception):
+                raise error  # Ctrl-C reached the worker first
             else:
                 yield {"trial": jobs[job].number, "seal": jobs[job].seal, "error": f"{type(error).__name__}: {error}"}
 
