@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: setup demo test lint interop bench docs clean lock
+.PHONY: blind-ci setup demo test lint interop bench docs clean lock
 setup: $(STAMP)
 
 $(STAMP): requirements.txt pyproject.toml
@@ -25,6 +25,9 @@ lint: setup
 
 test: lint
 	$(BIN)/python -m pytest -n 2 -m "not interop"
+
+blind-ci: setup
+	$(BIN)/python bench/blind_ci.py
 
 interop: setup
 	$(BIN)/python -m pytest -m interop -rs

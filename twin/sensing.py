@@ -7,9 +7,10 @@ other effect (its trajectory is simulated), so that it competes with lags.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.ndimage import median_filter
 
 from logs.recording import Recording
 from twin.catalog import effect
@@ -50,7 +51,7 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
 
     `fastest` is the design's rate limit [position/s]: a short turn of a moving stem is no false reading.
     """
-    events = tuple(scan_events(r, noise) for r in recordings)
+    events = tuple(_widened(scan_events(r, noise), r, noise, fastest) for r in recordings)
     accepted: dict[str, dict[str, Estimate]] = {}
     rows = sum(r.n for r in recordings)
     false = sum(int(e.false_position.sum()) for e in events)
@@ -82,3 +83,16 @@ def _false_beyond_motion(recordings: Sequence[Recording], events: Sequence[Event
         between = np.interp(bad, good, recording.position[good]) if good.size else recording.position[bad]
         jumps.append(np.abs(recording.position[bad] - between) / (fastest * recording.period_s))
     return bool(np.median(np.concatenate(jumps)) > 1.5)
+
+
+def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: float) -> Events:
+    """Where false readings were found, those too that fell into a motion: further from the median of their seven
+    neighbours than a stem at full speed could be."""
+    if not events.evidence["sensor_dropouts"].found:
+        return events
+    known = np.isfinite(recording.position)
+    rows = np.arange(recording.n)
+    filled = np.interp(rows, rows[known], recording.position[known])
+    reach = 2.5 * fastest * recording.period_s + 8.0 * noise.position.sigma
+    far = known & (np.abs(filled - median_filter(filled, 7, mode="nearest")) > reach)
+    return replace(events, false_position=events.false_position | far)
