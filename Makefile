@@ -4,7 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 STAMP := $(VENV)/.installed
 
-.PHONY: blind-ci setup demo test lint interop bench docs clean lock
+.PHONY: blind-ci setup demo test lint interop docs clean lock
 setup: $(STAMP)
 
 $(STAMP): requirements.txt pyproject.toml
@@ -25,6 +25,10 @@ lint: setup
 
 test: lint
 	$(BIN)/python -m pytest -n 2 -m "not interop"
+
+docs: setup
+	$(BIN)/lostmotion explain --markdown > docs/effects.md
+	$(BIN)/lostmotion gallery
 
 blind-ci: setup
 	$(BIN)/python bench/blind_ci.py

@@ -1,0 +1,154 @@
+"""Search, score and decision: every effect is found when it is large, and nothing where there is nothing.
+
+The truth is simulated with the candidates' own code here, so this says that the machinery is sound and no more; what
+the diagnosis is worth is measured on other physics (docs/blind.md).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from twin.case import make_case
+from twin.catalog import effects
+from twin.choose.decide import DecisionRules
+from twin.choose.score import make_yardstick, student_log_likelihood, whitening_filter
+from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
+from twin.effect import Effect
+from twin.explain import typical_values
+from twin.fit.least_squares import descend, minimise
+from twin.plant import Inserted, Plant
+from twin.sensing import sense
+from twin.simulate import simulate_recording
+from twin.stages import StageResult, judge
+from twin.verdict import Judgement, pronounce
+
+_NOISE_IN, _NOISE_PSI = 0.0004, 0.008
+
+
+def _command(n: int) -> FloatArray:
+    """Random steps over both curves, held long enough to settle now and then, with slow steps between."""
+    dice = np.random.default_rng(5)
+    levels: list[FloatArray] = []
+    while sum(part.size for part in levels) < n:
+        levels.append(np.full(int(dice.integers(15, 90)), dice.uniform(4.5, 12.8)))
+    return np.concatenate(levels)[:n]
+
+
+def _record(plant: Plant, seed: int = 1) -> Recording:
+    n, period_s = 2400, 0.2
+    blank = np.zeros(n)
+    record = Recording("valve", np.arange(n) * period_s, _command(n), blank, np.full(n, 4.0))
+    pressure, position = simulate_recording(plant, record)
+    dice = np.random.default_rng(seed)
+    pressure = pressure + dice.normal(0.0, _NOISE_PSI, n)
+    position = position + dice.normal(0.0, _NOISE_IN, n)
+    return Recording("valve", record.time_s, record.command, position, pressure)
+
+
+def _judged(record: Recording, design: DesignModel | None = None) -> tuple[StageResult, Judgement]:
+    design = design or DesignModel()
+    case = make_case([record], design)
+    sensing = sense([record], case.noise, design.travel, design.rate_limit)
+    result = judge(case, SearchRules(most=2), DecisionRules(), lambda _what, _share: None)
+    return result, pronounce(result, sensing, 0.0, Weights())
+
+
+@pytest.mark.parametrize(
+    "effect", [e for e in effects().values() if e.evidence == "trajectory"], ids=lambda e: str(e.name)
+)
+def test_a_large_effect_is_named(effect: Effect) -> None:
+    form = effect.forms[0]
+    record = _record(Plant(DesignModel(), (Inserted(effect.name, form, tuple(typical_values(form))),)))
+    _, judgement = _judged(record)
+    named = {cause.name for cause in judgement.causes}
+    twins = {name for names in effect.same_as.values() for name in names}
+    assert named & {effect.name, *twins}, f"{effect.name} came out as {judgement.verdict} {sorted(named)}"
+
+
+def test_nothing_is_named_where_nothing_is_wrong() -> None:
+    _, judgement = _judged(_record(Plant(DesignModel())))
+    assert judgement.verdict == "no_gap"
+    assert judgement.causes == ()
+
+
+@pytest.mark.parametrize(
+    ("number", "design"),
+    [
+        ("deadband", DesignModel(a1=8.9, a2=5.7)),
+        ("tau", DesignModel(tau_s=3.1)),
+        ("rate_limit", DesignModel(rate_limit=0.1)),
+        ("ep_tau", DesignModel(ep_tau_s=0.45)),
+    ],
+)
+def test_a_wrong_design_number_is_not_called_an_effect(number: str, design: DesignModel) -> None:
+    _, judgement = _judged(_record(Plant(design)))
+    assert judgement.verdict == "parameter"
+    assert [cause.name for cause in judgement.causes] == [f"parameter:{number}"]
+
+
+def test_something_outside_the_vocabulary_is_unexplained() -> None:
+    record = _record(Plant(DesignModel()))
+    wave = 0.02 * np.sin(2.0 * np.pi * record.time_s / 23.0)
+    position = record.position + wave
+    _, judgement = _judged(Recording("wave", record.time_s, record.command, position, record.pressure))
+    assert judgement.verdict == "unexplained"
+    assert judgement.causes == ()
+
+
+def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> None:
+    effect = effects()["sensor_lag"]
+    plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], tuple(typical_values(effect.forms[0]))),))
+    _, judgement = _judged(_record(plant))
+    weights = Weights()
+    assert all(cause.probability <= weights.ceiling for cause in judgement.causes)
+    assert {"sensor_lag", "additional_lag"} <= {name for names in judgement.confusable for name in names}
+    lag = next(c for c in judgement.causes if c.name in ("sensor_lag", "additional_lag"))
+    assert lag.probability <= weights.ceiling
+
+
+def test_whitening_takes_the_memory_out() -> None:
+    dice = np.random.default_rng(0)
+    noise = dice.normal(size=20_000)
+    memory = np.empty_like(noise)
+    memory[0] = noise[0]
+    for k in range(1, noise.size):
+        memory[k] = 0.9 * memory[k - 1] + noise[k]
+    fir = whitening_filter(memory)
+    assert fir[1] == pytest.approx(-0.9, abs=0.03)
+    yardstick = make_yardstick(memory, np.ones(memory.size, dtype=bool))
+    assert yardstick.phi > 10.0
+    assert yardstick.white_phi < 1.2
+
+
+def test_student_likelihood_forgives_a_few_outliers() -> None:
+    dice = np.random.default_rng(0)
+    clean = dice.normal(size=5000)
+    spoilt = clean.copy()
+    spoilt[::500] = 60.0
+    louder = 2.0 * clean
+    assert student_log_likelihood(clean) > student_log_likelihood(spoilt) > student_log_likelihood(louder)
+
+
+def test_least_squares_finds_the_minimum_and_keeps_the_bounds() -> None:
+    x = np.linspace(0.0, 1.0, 50)
+
+    def residuals(z: FloatArray) -> FloatArray:
+        return np.asarray(z[0] * np.exp(-z[1] * x) - 2.0 * np.exp(-3.0 * x))
+
+    low, high, steps = np.array([0.0, 0.0]), np.array([5.0, 10.0]), np.array([1e-4, 1e-4])
+    free = minimise(residuals, np.array([1.0, 1.0]), low, high, steps, rounds=30)
+    assert free.z == pytest.approx([2.0, 3.0], abs=1e-3)
+    held = minimise(residuals, np.array([1.0, 1.0]), low, np.array([5.0, 2.0]), steps, rounds=30)
+    assert held.z[1] == pytest.approx(2.0, abs=1e-9)
+
+
+def test_descent_walks_into_a_narrow_valley() -> None:
+    def residuals(z: FloatArray) -> FloatArray:
+        return np.array([0.1 if abs(z[0] - 0.3) < 0.01 else 1.0 + abs(z[0] - 0.3)])
+
+    z = descend(residuals, np.array([0.33]), np.array([0]), np.array([0.0]), np.array([1.0]))
+    assert abs(z[0] - 0.3) < 0.01
