@@ -74,7 +74,7 @@ def _jumps(e: float, free: float, held: float) -> float:
     return where
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(inline="always", nogil=True, error_model="numpy")
 def _held(
     q: float, band: float, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
 ) -> tuple[float, float]:
@@ -139,7 +139,7 @@ def _half_band(wide: float, state: State, c: FloatArray) -> float:
     return grown
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(inline="always", nogil=True, error_model="numpy")
 def _breakaway(state: State, c: FloatArray) -> tuple[float, float]:
     """What it takes beyond sliding friction to close and to open now.
 
@@ -160,7 +160,7 @@ def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -
     return bounded
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(inline="always", nogil=True, error_model="numpy")
 def _move(
     h: float, new_w: float, slipped: bool, c: FloatArray, stops: FloatArray, lags: FloatArray, state: State
 ) -> State:
@@ -202,10 +202,7 @@ def coupled_pass(
     stands: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem. `stops`: (low, high) of the play output, then of the stem; `start`: (x, w).
-
-    At the fine points `marks` the stem rests at `stands`: play output and stem are set there, and it sticks.
-    """
+    """Fills `out` (fine) with the stem, at rest at `stands` at `marks`. `stops`: play, stem; `start`: (x, w)."""
     elements = np.full(plays[0].size, start[1])
     w, _ = _play_step(force[0], widening[0], (0.0, 0.0), (False, False), stops, tables, plays, elements)
     x = max(stops[2], min(stops[3], start[0]))

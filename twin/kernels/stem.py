@@ -24,10 +24,7 @@ def stem_pass(
     stands: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem, set to `stands` at the fine points `marks`. Exact for a linear target.
-
-    `lags_s` and `rates` are (closing, opening).
-    """
+    """Fills `out` (fine) with the stem, set to `stands` at `marks`; `lags_s`, `rates`: (closing, opening)."""
     x = max(low, min(high, x0))
     out[0] = x
     last_h = -1.0
