@@ -13,8 +13,8 @@ from twin.fit.least_squares import Minimum, descend, minimise
 from twin.fit.space import Space, form_starts
 from twin.plant import Plant
 
-#: How far off, in z, the curves of a wrong design are looked for.
-_FAR = {"deadband": 0.6, "offset": 0.25}
+#: How far off, in z, wrong numbers are also looked for: from their nominals the way may lead through a worse fit.
+_FAR = {"deadband": 0.6, "offset": 0.25, "rate_limit": 0.45, "tau": 0.4, "ep_tau": 0.5}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,7 +114,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
 
 
 def _number_starts(space: Space) -> list[FloatArray]:
-    """Design numbers at their nominals; where nothing but they stand accused, the curves also start far off.
+    """Design numbers at their nominals; where nothing but they stand accused, they also start far off.
 
     A design that is wrong enough never moves, and then no small change of its numbers makes a difference.
     """
