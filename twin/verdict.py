@@ -69,10 +69,19 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
             parameters = {label: estimate for (_, label), estimate in own.items()}
             causes.append(Cause(candidate.name, candidate.stage, weight.probability[candidate.name], None, parameters))
+    causes = [c for c in causes if not _is_rounding(c, sensing)]
     for name, found in sensing.accepted.items():
         if name not in {c.name for c in causes}:
             causes.append(Cause(name, "sensor", _EVENT_PROBABILITY, None, found))
     return tuple(sorted(causes, key=lambda c: -c.probability))
+
+
+def _is_rounding(cause: Cause, sensing: Sensing) -> bool:
+    """Whether a calibration error is how a coarse reading rounds: always down is half a step of zero error."""
+    if cause.name != "lvdt_calibration" or "sensor_quantization" not in sensing.accepted:
+        return False
+    errors = {name: abs(one.value) for name, one in cause.parameters.items()}
+    return errors.get("zero", 0.0) <= 0.75 * sensing.step and errors.get("gain", 0.0) < 0.02
 
 
 def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
