@@ -199,6 +199,8 @@ def _read_events(path: Path, problems: list[str]) -> tuple[Event, ...]:
         return ()
     events = []
     for line in (path / EVENTS).read_bytes().splitlines():
+        if not line.strip():
+            continue  # a note that was written while the line before it was still growing begins with a line end
         try:
             entry = json.loads(line)
             time_s = entry.get("time_s")

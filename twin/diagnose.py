@@ -6,8 +6,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from importlib.metadata import PackageNotFoundError, version
 
-import numpy as np
-
 from control.design import DesignModel
 from logs.recording import DataNote, FloatArray, Recording
 from twin.admit import admit
@@ -28,7 +26,8 @@ from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
-from twin.sensing import Sensing, sense
+from twin.rounding import rounding_down
+from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
 from twin.statement import statement
 from twin.thin import look_at, on_everything
@@ -85,11 +84,12 @@ def diagnose(
     """
     settings = settings or Settings()
     recordings, notes = cut_at_holes(recordings)
-    noise = estimate_noise(recordings)
+    noise = noise_of_refreshed(recordings, estimate_noise(recordings))
     notes += admit(recordings, Plant(design, tuple(inserted)), noise)
     recordings, timing_notes = settled_timing(recordings, Plant(design, tuple(inserted)), noise)
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
+    inserted = (*inserted, *rounding_down(recordings, Plant(design, tuple(inserted)), sensing))
     case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
@@ -107,7 +107,7 @@ def diagnose(
         final = _final_plant(case, result, judgement, retuned, sensing)
         progress("held-out gap", 0.0)
         parts = heldout_parts(look, result, judgement, retuned, sensing, stage.told(progress))
-        diagnosis = _assembled(case, result, judgement, where, parts, settings, notes, sensing)
+        diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
         loop = closed_loop(recordings, final)
     except KeyboardInterrupt as stop:
@@ -137,11 +137,8 @@ def _assembled(
     parts: GapParts,
     settings: Settings,
     notes: Sequence[DataNote],
-    sensing: Sensing,
 ) -> Diagnosis:
     floor = case.sigma_y
-    if "sensor_quantization" in sensing.accepted:
-        floor = float(np.sqrt(max(floor**2 - sensing.step**2 / 12.0, 1e-12 * case.travel**2)))
     memory = case.noise.position.correlation_samples
     numbers = gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, settings.seed)
     causes = tuple(replace(c, heldout_gap_without=parts.without.get(c.name)) for c in judgement.causes)

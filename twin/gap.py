@@ -51,7 +51,7 @@ def heldout_parts(
     elif judgement.verdict == "unexplained" or not named:
         after = again
     else:
-        after = _predicted(case, {d: d.accepted for d in named}, sensing)
+        after = _predicted(case, {d: d.accepted for d in named})
     if "sensor_dropouts" in sensing.accepted and judgement.verdict != "unexplained":
         before, again, after = _with_false_readings(case, retuned, sensing, before, again, after)
     progress("held-out gap", 0.5)
@@ -62,10 +62,9 @@ def heldout_parts(
     return GapParts(before, again, after, without, alone)
 
 
-def _predicted(case: Case, fits: dict[Decision, Fit], sensing: Sensing | None = None) -> FloatArray:
+def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
     channels = [d.findings.channel for d in fits]
-    extra = sensing.inserted() if sensing else ()
-    return predict_heldout(case, case.base, list(fits.values()), channels, extra)
+    return predict_heldout(case, case.base, list(fits.values()), channels)
 
 
 def _with_false_readings(

@@ -16,7 +16,7 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit
-from twin.plant import Inserted, Plant
+from twin.plant import Plant
 from twin.stages import combined
 
 FOLDS = 2
@@ -76,20 +76,14 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
     ]
 
 
-def predict_heldout(
-    case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel], extra: Sequence[Inserted] = ()
-) -> FloatArray:
-    """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count.
-
-    `extra` are effects that no fit knows (the resolution of the reading).
-    """
+def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:
+    """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count."""
     whole = case.everything
     chain = chain_channel(whole.trials, whole.sigma_y)
     folds = _folds_of_everything(case)
     error = np.full(chain.measured.size, np.nan)
     for fold, weights in enumerate(fold_weights(case)):
         plant = combined(base, refitted(fits, channels, weights)) if fits else base
-        plant = Plant(plant.design, (*plant.inserted, *extra))
         held = (folds == fold) & chain.use
         error[held] = (chain.measured - chain.prediction(plant))[held]
     return error

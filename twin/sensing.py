@@ -17,13 +17,17 @@ from twin.catalog import effect
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence
 from twin.events.scan import Events, scan_events
-from twin.noise.model import NoiseModel
+from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
 #: A step is an effect when it is coarser than the noise and than this share of travel.
 _LEAST_STEP = 1e-3
+#: Held readings are an effect of their own when they are this share of all, with this much evidence [nats].
+_HELD, _HELD_NATS = 0.3, 100.0
+#: Share of readings that repeat the one before, above which the noise is taken from the others.
+_MOSTLY_HELD = 0.4
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +66,9 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
     if quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step)):
         accepted["sensor_quantization"] = dict(quantization.estimates)
+    stale = _strongest(events, "stale_samples")
+    if stale.found and stale.log_likelihood_ratio > _HELD_NATS and stale.estimates["hold_fraction"].value > _HELD:
+        accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     return Sensing(events, accepted, step)
 
 
@@ -96,3 +103,21 @@ def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: f
     reach = 2.5 * fastest * recording.period_s + 8.0 * noise.position.sigma
     far = known & (np.abs(filled - median_filter(filled, 7, mode="nearest")) > reach)
     return replace(events, false_position=events.false_position | far)
+
+
+def noise_of_refreshed(recordings: Sequence[Recording], noise: NoiseModel) -> NoiseModel:
+    """The noise with that of the position taken from fresh readings only, where most readings repeat the one before.
+
+    Repeated values look still and free of noise; `noise` is returned as it is where the readings are fresh.
+    """
+    stale = [scan_events(r, noise).evidence["stale_samples"] for r in recordings]
+    if not all(e.found and e.estimates["hold_fraction"].value > _MOSTLY_HELD for e in stale):
+        return noise
+    return replace(noise, position=estimate_noise([_fresh(r) for r in recordings]).position)
+
+
+def _fresh(recording: Recording) -> Recording:
+    """The rows whose position differs from the row before."""
+    new = np.flatnonzero(np.diff(recording.position, prepend=np.nan) != 0.0)
+    pressure = None if recording.pressure is None else recording.pressure[new]
+    return Recording(recording.name, recording.time_s[new], recording.command[new], recording.position[new], pressure)

@@ -35,7 +35,7 @@ def pronounce(result: StageResult, sensing: Sensing, ep_share: float, weights: W
     causes = _causes(result, weighed, sensing)
     sets = tuple(s for w in weighed for s in w.sets)
     ranking = _ranking(weighed, sensing)
-    if _unexplained(result, ep_share, "sensor_dropouts" in sensing.accepted):
+    if _unexplained(result, ep_share, sensing):
         return Judgement("unexplained", (), ranking, ())
     effects = [c for c in causes if not c.name.startswith("parameter:")]
     if not causes:
@@ -44,13 +44,16 @@ def pronounce(result: StageResult, sensing: Sensing, ep_share: float, weights: W
     return Judgement(verdict, causes, ranking, sets)
 
 
-def _unexplained(result: StageResult, ep_share: float, false_readings: bool) -> bool:
+def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool:
     """Whether a channel with a gap found no cause, and the gap matters for the stem.
 
     Among false readings there are always some that cannot be told from true ones; what little they add needs no cause.
+    Readings that are seen to be held, but at no fixed period, cannot be predicted, and are a cause all the same.
     """
     for decision in result.decisions:
-        if false_readings and decision.findings.none.mse < MISSED_FALSE:
+        if "sensor_dropouts" in sensing.accepted and decision.findings.none.mse < MISSED_FALSE:
+            continue
+        if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
             continue
         if decision.gap and not decision.explained:
             minor = decision.findings.channel.name == "pressure" and ep_share < MATERIAL_SHARE
@@ -69,19 +72,10 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
             parameters = {label: estimate for (_, label), estimate in own.items()}
             causes.append(Cause(candidate.name, candidate.stage, weight.probability[candidate.name], None, parameters))
-    causes = [c for c in causes if not _is_rounding(c, sensing)]
     for name, found in sensing.accepted.items():
         if name not in {c.name for c in causes}:
             causes.append(Cause(name, "sensor", _EVENT_PROBABILITY, None, found))
     return tuple(sorted(causes, key=lambda c: -c.probability))
-
-
-def _is_rounding(cause: Cause, sensing: Sensing) -> bool:
-    """Whether a calibration error is how a coarse reading rounds: always down is half a step of zero error."""
-    if cause.name != "lvdt_calibration" or "sensor_quantization" not in sensing.accepted:
-        return False
-    errors = {name: abs(one.value) for name, one in cause.parameters.items()}
-    return errors.get("zero", 0.0) <= 0.75 * sensing.step and errors.get("gain", 0.0) < 0.02
 
 
 def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
