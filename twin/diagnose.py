@@ -84,8 +84,9 @@ def diagnose(
     """
     settings = settings or Settings()
     recordings, notes = cut_at_holes(recordings)
-    noise = noise_of_refreshed(recordings, estimate_noise(recordings))
+    noise = estimate_noise(recordings)
     notes += admit(recordings, Plant(design, tuple(inserted)), noise)
+    noise = noise_of_refreshed(recordings, noise)
     recordings, timing_notes = settled_timing(recordings, Plant(design, tuple(inserted)), noise)
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
