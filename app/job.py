@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import asdict, dataclass, field
@@ -21,6 +22,10 @@ if TYPE_CHECKING:
 
 
 WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
+
+
+#: How long one thread may keep the others of this process waiting [s].
+SWITCH_S = 0.0003
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,6 +73,8 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     _check_watchdogs(session, job.plan.period_s)
     columns = columns_of(session.bench.info, closed_loop=job.closed_loop, aux_units=session.aux_units)
     columns |= job.beside.columns if job.beside is not None else {}
+    # The writer of a view may hold the interpreter for 5 ms by default; a tick of a fast loop cannot wait that long.
+    sys.setswitchinterval(SWITCH_S)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
         record = stack.enter_context(RunWriter.create(out, _start(session, job), columns))

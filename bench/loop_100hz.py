@@ -53,6 +53,7 @@ def paced_device() -> Iterator[str]:
 
 def one_round(port: str, seconds: float, folder: Path | None) -> tuple[Columns, int, int]:
     """(times of every tick, overruns, missing ticks); with a `folder`, recorded there and streamed."""
+    from app.job import SWITCH_S
     from control.drive import OpenLoopDrive
     from control.loop import Loop, Sink
     from control.plan import Plan
@@ -78,6 +79,7 @@ def one_round(port: str, seconds: float, folder: Path | None) -> tuple[Columns, 
             assert view.on, view.trouble
             sinks += [writer, view]
         plan = Plan(PERIOD_S, (Step(0.0, 0.0, 0.0, 0.5), Step(9.0, 14.0, seconds - 0.5, seconds - 0.5)))
+        sys.setswitchinterval(SWITCH_S)  # as every recorded run does
         outcome = Loop(bench, clock, sinks, aux=tuple(aux)).run(plan, OpenLoopDrive())
     return seen, outcome.overruns, outcome.missing
 
