@@ -79,7 +79,7 @@ def one_round(port: str, seconds: float, folder: Path | None) -> tuple[Columns, 
             assert view.on, view.trouble
             sinks += [writer, view]
         plan = Plan(PERIOD_S, (Step(0.0, 0.0, 0.0, 0.5), Step(9.0, 14.0, seconds - 0.5, seconds - 0.5)))
-        sys.setswitchinterval(SWITCH_S)  # as every recorded run does
+        sys.setswitchinterval(SWITCH_S)  # as every run with a live view does
         outcome = Loop(bench, clock, sinks, aux=tuple(aux)).run(plan, OpenLoopDrive())
     return seen, outcome.overruns, outcome.missing
 
