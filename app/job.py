@@ -73,8 +73,6 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     _check_watchdogs(session, job.plan.period_s)
     columns = columns_of(session.bench.info, closed_loop=job.closed_loop, aux_units=session.aux_units)
     columns |= job.beside.columns if job.beside is not None else {}
-    # The writer of a view may hold the interpreter for 5 ms by default; a tick of a fast loop cannot wait that long.
-    sys.setswitchinterval(SWITCH_S)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
         record = stack.enter_context(RunWriter.create(out, _start(session, job), columns))
@@ -131,6 +129,8 @@ def _start(session: Session, job: Job) -> dict[str, object]:
 
 
 def _open_view(record: RunWriter, columns: Mapping[str, str]) -> RunView:
+    # Its writer may hold the interpreter for 5 ms by default; a tick of a fast loop cannot wait that long.
+    sys.setswitchinterval(SWITCH_S)
     from logs.stream import RunView
 
     view = RunView.open(record.start, columns)
