@@ -18,6 +18,9 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.slots import GRID, neutral_ep, neutral_sensor, neutral_valve
 
+_XI = np.linspace(0.0, 1.0, GRID)
+_XI.setflags(write=False)
+
 Stage = Literal["ep", "actuator", "sensor"]
 Kind = Literal[
     "pressure",
@@ -89,12 +92,18 @@ class Scales:
         }[kind]
 
 
+def _no_bends() -> tuple[FloatArray, FloatArray, FloatArray]:
+    return np.zeros(1), np.zeros(1), np.ones(1)
+
+
 @dataclass(slots=True)
 class Coefficients:
     """Everything the kernels need, filled from the design and then changed by effects. Made anew for each simulation.
 
     `close_shift` and `open_shift` (shape (GRID,), pressure) bend the closing and the opening curve over the position
-    grid 0..travel: positive means that more pressure is needed at that position. `spreads`/`weights` describe the play.
+    grid 0..travel: positive means that more pressure is needed at that position. The position is that of the play
+    output, where the stem is pulled to; `stem_bends` (closing shift, opening shift, compliance relative to the
+    design's) go by where the stem is by then (shape (1,): nothing does). `spreads`/`weights` describe the play.
     """
 
     design: DesignModel
@@ -104,6 +113,7 @@ class Coefficients:
     sensor: FloatArray = field(default_factory=neutral_sensor)
     close_shift: FloatArray = field(default_factory=lambda: np.zeros(GRID))
     open_shift: FloatArray = field(default_factory=lambda: np.zeros(GRID))
+    stem_bends: tuple[FloatArray, FloatArray, FloatArray] = field(default_factory=_no_bends)
     spreads: FloatArray = field(default_factory=lambda: np.zeros(1))
     weights: FloatArray = field(default_factory=lambda: np.ones(1))
     close_gain: float = 1.0  # compliance of the closing curve relative to the design's
@@ -112,7 +122,16 @@ class Coefficients:
     @property
     def xi(self) -> FloatArray:
         """Position grid as a fraction of travel, 0 = open."""
-        return np.linspace(0.0, 1.0, GRID)
+        return _XI
+
+    def bend_at_stem(self, closing: FloatArray, opening: FloatArray, compliance: FloatArray | None = None) -> None:
+        """Adds to the pressure needed where the stem is, and multiplies the compliance there; shapes (GRID,)."""
+        close, open_, gain = self.stem_bends
+        self.stem_bends = (
+            close + closing,
+            open_ + opening,
+            gain * (np.ones(GRID) if compliance is None else compliance),
+        )
 
 
 Apply = Callable[[Coefficients, Sequence[float]], None]

@@ -14,7 +14,6 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Form
 from twin.kernels.ep import ep_kernel
-from twin.kernels.play import NO_RESTS, Rests
 from twin.kernels.sensor import sensor_kernel
 from twin.kernels.valve import valve_kernel
 from twin.slots import (
@@ -22,10 +21,7 @@ from twin.slots import (
     EP_TAU_RISE_S,
     GRID,
     S_BOW,
-    S_DRIFT_AMP,
-    S_DRIFT_RATE,
     S_GAIN,
-    S_PLAY,
     S_SWING,
     S_TRAVEL,
     S_ZERO,
@@ -35,11 +31,11 @@ from twin.slots import (
     V_RATE_OPEN,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
+    V_TRAVEL,
 )
 from twin.timegrid import TimeGrid
 
 _TABLE = 1025
-_MEMORY = [S_DRIFT_RATE, S_DRIFT_AMP, S_PLAY]
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +59,7 @@ class Plant:
         c = Coefficients(self.design, duration_s)
         d = self.design
         c.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = d.ep_tau_s
-        c.valve[V_HIGH] = d.travel
+        c.valve[[V_HIGH, V_TRAVEL]] = d.travel
         c.valve[[V_TAU_CLOSE_S, V_TAU_OPEN_S]] = d.tau_s
         c.valve[[V_RATE_CLOSE, V_RATE_OPEN]] = d.rate_limit
         c.sensor[S_TRAVEL] = d.travel
@@ -90,17 +86,12 @@ def pressure_response(c: Coefficients, grid: TimeGrid, command: FloatArray, p0: 
     return out
 
 
-def stem_response(
-    c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: float, w0: float, rests: Rests = NO_RESTS
-) -> FloatArray:
-    """True stem position on the fine grid from the pressure there; `x0` stem and `w0` play output at the first row.
-
-    At the fine points `rests` play output and stem are set to positions that are known otherwise.
-    """
+def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: float, w0: float) -> FloatArray:
+    """True stem position on the fine grid from the pressure there; `x0` stem and `w0` play output at the first row."""
     first, step, closing, opening = curve_tables(c)
     out = np.empty(grid.n_fine)
-    tables = (first, step, closing, opening)
-    valve_kernel(grid.time_s, pressure, grid.offsets, c.valve, *tables, c.spreads, c.weights, x0, w0, out, rests)
+    tables, bends = (first, step, closing, opening), c.stem_bends
+    valve_kernel(grid.time_s, pressure, grid.offsets, c.valve, tables, (c.spreads, c.weights), bends, (x0, w0), out)
     return out
 
 
@@ -141,11 +132,6 @@ def effect_tables(inserted: Sequence[Inserted]) -> Mapping[str, Mapping[str, flo
 
 def stem_at(c: Coefficients, reading: float) -> float:
     """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
-    return float(stems_at(c, np.array([reading]))[0])
-
-
-def stems_at(c: Coefficients, reading: FloatArray) -> FloatArray:
-    """Likewise for many readings."""
     s = c.sensor
     x = (reading - s[S_ZERO]) / s[S_GAIN]
     if s[S_BOW] != 0.0 or s[S_SWING] != 0.0:
@@ -153,9 +139,4 @@ def stems_at(c: Coefficients, reading: FloatArray) -> FloatArray:
             xi = x / s[S_TRAVEL]
             bend = s[S_TRAVEL] * xi * (1.0 - xi) * (4.0 * s[S_BOW] + 10.4 * s[S_SWING] * (1.0 - 2.0 * xi))
             x = (reading - s[S_ZERO]) / s[S_GAIN] - bend
-    return np.asarray(np.clip(x, c.valve[V_LOW], c.valve[V_HIGH]))
-
-
-def remembers(c: Coefficients) -> bool:
-    """Whether the reading of a stem at rest depends on more than where it stands: lost motion, drift."""
-    return bool(c.sensor[_MEMORY].any())
+    return float(min(max(x, c.valve[V_LOW]), c.valve[V_HIGH]))

@@ -59,7 +59,8 @@ V_STRIBECK_SPEED = 29  # speed at which 1/e of it is left [position/s]
 V_HELD = 30  # distance between target and stem up to which a stem at rest stays [position]
 V_TARGET_STICKS = 31  # 1: what sticks is the target, when it slows down; the stem follows its lag
 V_AGING_S = 32  # time at rest after which 1 - 1/e of the breakaway is there; 0: at once [s]
-V_COUNT = 33
+V_TRAVEL = 33  # travel over which forces are given that depend on where the stem is [position]
+V_COUNT = 34
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -99,6 +100,7 @@ def neutral_valve() -> FloatArray:
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
+    c[V_TRAVEL] = 1.0
     return c
 
 

@@ -39,6 +39,9 @@ class PlainValve:
     k1: float = 0.19
     k2: float = 0.19
     bend: Shape = _nothing  # extra pressure on both curves at position w
+    push: Shape = _nothing  # ... where the stem is by now
+    grip: Shape = _nothing  # extra half deadband where the stem is by now
+    stretch: Shape = _nothing  # extra compliance where the stem is by now, as a share
     widen: Shape = _nothing  # extra half deadband at position w
     grow: Shape = _nothing  # extra half deadband at time t
     tau_close: float = 2.7
@@ -66,7 +69,10 @@ class PlainValve:
         fine = np.repeat(command[1:], np.diff(rows))
         fine = np.concatenate([np.full(late, command[0]), fine])[: rows[-1]]
         p = held = command[0]
-        w = v = replace(self, breakaway=0.0)._play(p, x0, 0.0)  # the play output that pressure allows
+        free = replace(self, breakaway=0.0)
+        w = v = free._play(
+            p - self.push(x0), x0, 0.0, self.grip(x0), self.stretch(x0)
+        )  # the play output that pressure allows
         x = slow = core = x0
         lagged = self.reading(x, 0.0)
         out_p, out_y = [p], [self.reading(x, 0.0)]
@@ -75,7 +81,7 @@ class PlainValve:
             t = i * step_s
             held = u if abs(u - held) > self.hold_band else held
             p = self._pressure(p, min(self.zero + self.gain * held, self.supply), step_s)
-            w = self._play(p, x if self.in_motion else w, t)
+            w = self._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
             tau = self.tau_close if v > x else self.tau_open
             speed = min(max((v - x) / tau, -self.rate), self.rate)
@@ -97,15 +103,16 @@ class PlainValve:
         reach = self.pressure_rate * step_s
         return min(max(p - reach, min(p + reach, new)), self.cut_off)
 
-    def _play(self, p: float, w: float, t: float) -> float:
+    def _play(self, p: float, w: float, t: float, grip: float, stretch: float) -> float:
         """The next play output: on the closing curve at least, on the opening curve at most, else where it was."""
-        wide = self.grow(t)
-        need_close = self.a1 + w / self.k1 + self.bend(w) + self.widen(w) + wide  # pressure that would move it up
-        need_open = self.a2 + w / self.k2 + self.bend(w) - self.widen(w) - wide
+        wide = self.grow(t) + grip
+        k1, k2 = self.k1 * (1.0 + stretch), self.k2 * (1.0 + stretch)
+        need_close = self.a1 + w / k1 + self.bend(w) + self.widen(w) + wide  # pressure that would move it up
+        need_open = self.a2 + w / k2 + self.bend(w) - self.widen(w) - wide
         if p > need_close + self.breakaway:
-            w = self._solve(p - wide, self.a1, self.k1, +1.0)
+            w = self._solve(p - wide, self.a1, k1, +1.0)
         elif p < need_open - self.breakaway:
-            w = self._solve(p + wide, self.a2, self.k2, -1.0)
+            w = self._solve(p + wide, self.a2, k2, -1.0)
         return min(max(w, self.low), self.high)
 
     def _solve(self, p: float, a: float, k: float, sign: float) -> float:

@@ -48,6 +48,10 @@ def spot(w: float) -> float:
     return 0.3 * float(np.exp(-0.5 * ((w / TRAVEL - 0.5) / 0.15) ** 2))
 
 
+def softer(x: float) -> float:
+    return 0.3 * (x / TRAVEL - 0.5)
+
+
 def curved(x: float, _t: float) -> float:
     return x + TRAVEL * 0.02 * 4.0 * (x / TRAVEL) * (1.0 - x / TRAVEL)
 
@@ -69,6 +73,10 @@ SAME = {
     "spring": (plant_with("spring_asymmetry", "hinged_open", 0.1), PlainValve(k1=0.19 / 0.9, k2=0.19 / 1.1)),
     "nonlinear_spring": (plant_with("nonlinear_spring", "bow", 0.4), PlainValve(bend=bow)),
     "friction_spot": (plant_with("position_dependent_friction", "spot", 0.3, 0.5, 0.15), PlainValve(widen=spot)),
+    "flow_at_stem": (plant_with("flow_force", "stem_square", 0.4), PlainValve(push=lambda x: 0.4 * (x / TRAVEL) ** 2)),
+    "spring_at_stem": (plant_with("nonlinear_spring", "stem_bow", 0.4), PlainValve(push=bow)),
+    "soft_at_stem": (plant_with("nonlinear_spring", "stem_slope", 0.3), PlainValve(stretch=softer)),
+    "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),
     "drift": (plant_with("friction_drift", "linear", 0.01), PlainValve(grow=lambda t: 0.01 * t)),
     "sudden": (plant_with("friction_drift", "sudden", 0.4, 0.5), PlainValve(grow=lambda t: 0.4 * (t >= 29.9))),
     "damping": (plant_with("asymmetric_damping", "two_lags", 0.3), PlainValve(tau_close=3.51, tau_open=1.89)),

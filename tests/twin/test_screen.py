@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from control.design import DesignModel
-from tests.twin.test_rests import DESIGN, SIGMA, staircase, trial_of
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.screen import make_screen, prospects
 from twin.effect import Scales

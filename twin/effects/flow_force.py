@@ -44,6 +44,23 @@ def _near_seat(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * opening * np.exp(1.0 - opening))
 
 
+def _push_stem(c: Coefficients, shape: FloatArray) -> None:
+    # With its straight line: a force that follows the stem, and not the play, is more than another compliance.
+    c.bend_at_stem(shape, shape)
+
+
+def _stem_linear(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, values[0] * c.xi)
+
+
+def _stem_square(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, values[0] * np.square(c.xi))
+
+
+def _stem_seat(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
+
+
 def _at_seat(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
 
@@ -53,15 +70,18 @@ EFFECT = Effect(
     stage="actuator",
     claim="Fluid through the valve pushes the plug, depending on opening.",
     equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
-    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12)",
+    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12); stem_*: f of the stem x, with its line",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5; Borden (ed.), Control Valves (ISA 1998)",
     forms=(
         Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
         Form("near_seat", _force("peak of the force at 12 % opening, as pressure"), _near_seat),
         Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
+        Form("stem_linear", _force("force at closed, growing in proportion to closure, as pressure"), _stem_linear),
+        Form("stem_square", _force("force at closed, growing with the square of closure, as pressure"), _stem_square),
+        Form("stem_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _stem_seat),
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
     odds=0.05,  # most benches are dry
     absorbs=("compliance", "offset"),
-    same_as={"throttling": ("nonlinear_spring",), "near_seat": ("nonlinear_spring",), "at_seat": ("nonlinear_spring",)},
+    same_as=dict.fromkeys(("throttling", "near_seat", "at_seat", "stem_square", "stem_seat"), ("nonlinear_spring",)),
 )

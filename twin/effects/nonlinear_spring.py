@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from twin.effect import Coefficients, Effect, Form, Parameter
 
 
@@ -32,17 +34,48 @@ def _bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
     c.open_shift += shift
 
 
+def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
+    shift = values[0] * 4.0 * c.xi * (1.0 - c.xi)
+    c.bend_at_stem(shift, shift)
+
+
+def _stem_slope(c: Coefficients, values: Sequence[float]) -> None:
+    nothing = np.zeros_like(c.xi)
+    c.bend_at_stem(nothing, nothing, 1.0 + values[0] * (c.xi - 0.5))
+
+
 _BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
 _SWING = _parameter("swing", "amplitude of the S-shaped part: extra pressure at 21 % of travel, less at 79 %")
+
+_SLOPE = Parameter(
+    name="slope",
+    kind="fraction",
+    lower=-0.9,
+    upper=0.9,
+    starts=(-0.2, -0.03, 0.03, 0.2),
+    scale=0.2,
+    doc="change of the compliance from fully open to fully closed, as a share of that at mid travel",
+)
 
 EFFECT = Effect(
     name="nonlinear_spring",
     stage="actuator",
     claim="Compliance depends on position.",
-    equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi)",
+    equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
+    "stem_bow: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2))",
     source="Garcia, Control Eng. Practice 16 (2008) 1231; actuator data sheets (effective area over stroke)",
-    forms=(Form("bow", (_BOW,), _bow), Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing)),
+    forms=(
+        Form("bow", (_BOW,), _bow),
+        Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing),
+        Form("stem_bow", (_BOW,), _stem_bow),
+        Form("stem_slope", (_SLOPE,), _stem_slope),
+    ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),
-    same_as={"bow": ("flow_force",), "bow_and_swing": ("flow_force",)},
+    same_as={
+        "bow": ("flow_force",),
+        "bow_and_swing": ("flow_force",),
+        "stem_bow": ("flow_force",),
+        "stem_slope": ("flow_force",),
+    },
 )

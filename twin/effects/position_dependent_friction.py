@@ -74,6 +74,12 @@ def _spot(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * bump(c.xi, values[1], values[2]))
 
 
+def _stem_spot(c: Coefficients, values: Sequence[float]) -> None:
+    # The packing grips the stem where it is; going by where it is pulled to is right only when it is slow.
+    shape = values[0] * bump(c.xi, values[1], values[2])
+    c.bend_at_stem(shape, -shape)
+
+
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * detrended(bow(c.xi), c.xi))
 
@@ -101,10 +107,11 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
     equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
-    "or straight between points of the travel",
+    "or straight between points of the travel; stem_spot: e of the stem x",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _spot),
+        Form("stem_spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _stem_spot),
         Form("bow", (_height("extra half deadband at mid travel against the ends, 1.5 times"),), _bow),
         Form("open_end", (_height("extra half deadband at fully open"),), _open_end),
         Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),

@@ -13,10 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients
-from twin.fit.rests import Rests
 from twin.fit.trial import Trial, concatenate
-from twin.plant import Plant, pressure_response, reading_response, remembers, stem_at, stem_response, stems_at
+from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -48,25 +46,7 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s)
     start = stem_at(c, trial.start_position)
     play = start if trial.start_play is None else trial.start_play
-    if trial.rests is None or not trial.rests.rows.size:
-        return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play))
-    return _told(c, trial, trial.rests, pressure, (start, play))
-
-
-def _told(c: Coefficients, trial: Trial, rests: Rests, pressure: FloatArray, start: tuple[float, float]) -> FloatArray:
-    """The reading of a model that is told the position at every rest."""
-    marks = trial.grid.offsets[rests.rows]
-    stands = stems_at(c, rests.reading)
-    stem = stem_response(c, trial.grid, pressure, *start, (marks, stands))
-    reading = reading_response(c, trial.grid, stem)
-    if not remembers(c):
-        return reading
-    # What lies between stem and reading beyond a static curve (lost motion, drift) is as the first pass has it
-    # one row earlier, where the stem has come by itself.
-    before = rests.rows - 1
-    stands = stands + stem[trial.grid.offsets[before]] - stems_at(c, reading[before])
-    stem = stem_response(c, trial.grid, pressure, *start, (marks, stands))
-    return reading_response(c, trial.grid, stem)
+    return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play))
 
 
 @dataclass(frozen=True, slots=True)

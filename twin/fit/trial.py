@@ -9,7 +9,6 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
-from twin.fit.rests import Rests, find_rests
 from twin.timegrid import TimeGrid, make_grid
 
 #: Rows right after the start that do not count: the state before the first row is unknown.
@@ -22,7 +21,6 @@ class Trial:
 
     `start_play` is the play output at the start where the valve was moving, None where it stood with the stem.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
-    With `rests` a model is told the reading wherever the stem rests (see `twin/fit/rests.py`); None: it runs free.
     """
 
     recording: Recording
@@ -33,16 +31,10 @@ class Trial:
     use_p: npt.NDArray[np.bool_]
     use_y: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
-    rests: Rests | None = None
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""
         return replace(self, pressure=pressure)
-
-    def with_rests(self, sigma: float, memory: float, travel: float) -> Trial:
-        """The same trial with the rests of its stem; `sigma` and `memory` [samples] describe the reading's noise."""
-        r = self.recording
-        return replace(self, rests=find_rests(r.time_s, r.position, self.use_y, sigma, memory, travel))
 
 
 def make_trial(

@@ -1,6 +1,7 @@
 """Play and stem in one loop, for effects in which the target depends on how the stem moves.
 
-Friction inside the force balance, breakaway with a stick speed, friction that falls with speed, wear with distance.
+Friction inside the force balance, breakaway with a stick speed, friction that falls with speed, wear with distance,
+forces that depend on where the stem is (not on where it is pulled to).
 The small functions stand here once more on purpose: a compiled cache notices edits of its own file only.
 """
 
@@ -25,12 +26,18 @@ from twin.slots import (
     V_TAU_AFTER_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
+    V_TRAVEL,
     V_WEAR,
 )
 
 #: First pressure, step, closing and opening curve; and the spreads and weights of the elements.
 Tables = tuple[float, float, FloatArray, FloatArray]
 Plays = tuple[FloatArray, FloatArray]
+#: Over the stem's position, 0 .. travel: extra pressure (closing, opening), compliance relative to the design's; single
+#: points where the stem's position does not matter.
+Bends = tuple[FloatArray, FloatArray, FloatArray]
+#: What the half deadband grows by (closing, opening), compliance relative to the design's.
+Grown = tuple[float, float, float]
 #: Stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck [s].
 State = tuple[float, float, float, bool, float, float, float, float]
 
@@ -76,15 +83,15 @@ def _jumps(e: float, free: float, held: float) -> float:
 
 @njit(inline="always", nogil=True, error_model="numpy")
 def _held(
-    q: float, band: float, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
+    q: float, band: Grown, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
 ) -> tuple[float, float]:
     """Between which two positions an element stays at pressure `q` that needs `extra` (closing, opening) to start."""
     p_first, p_step, closing, opening = tables
-    bottom = _look_up(q - band - extra[0], p_first, p_step, closing)
-    top = _look_up(q + band + extra[1], p_first, p_step, opening)
+    bottom = band[2] * _look_up(q - band[0] - extra[0], p_first, p_step, closing)
+    top = band[2] * _look_up(q + band[1] + extra[1], p_first, p_step, opening)
     if inside:  # what the stops keep the play from does not pull at it
-        free_bottom = _look_up(q - band, p_first, p_step, closing)
-        free_top = _look_up(q + band, p_first, p_step, opening)
+        free_bottom = band[2] * _look_up(q - band[0], p_first, p_step, closing)
+        free_top = band[2] * _look_up(q + band[1], p_first, p_step, opening)
         bottom += min(stops[1], max(stops[0], free_bottom)) - free_bottom
         top += min(stops[1], max(stops[0], free_top)) - free_top
     return bottom, top
@@ -93,7 +100,7 @@ def _held(
 @njit(cache=True, nogil=True, error_model="numpy")
 def _play_step(
     q: float,
-    grown: float,
+    grown: Grown,
     extra: tuple[float, float],
     modes: tuple[bool, bool],
     stops: FloatArray,
@@ -111,15 +118,15 @@ def _play_step(
     slipped = False
     for j in range(elements.size):
         e = elements[j]
-        band = plays[0][j] + grown
+        band = (plays[0][j] + grown[0], plays[0][j] + grown[1], grown[2])
         held = (e, e)
         if extra[0] > 0.0 or extra[1] > 0.0:
             held = _held(q, band, extra, modes[1], stops, tables)
             if held[0] <= e <= held[1]:
                 w += plays[1][j] * e
                 continue
-        bottom = _look_up(q - band, p_first, p_step, closing)
-        top = _look_up(q + band, p_first, p_step, opening)
+        bottom = band[2] * _look_up(q - band[0], p_first, p_step, closing)
+        top = band[2] * _look_up(q + band[1], p_first, p_step, opening)
         if modes[0] and extra[0] > 0.0:
             bottom = _jumps(e, bottom, held[0]) if bottom > e else bottom
             top = _jumps(e, top, held[1]) if top < e else top
@@ -131,12 +138,16 @@ def _play_step(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _half_band(wide: float, state: State, c: FloatArray) -> float:
-    """What is added to the half deadband now: what time added, wear, and friction that falls with speed."""
+def _half_band(wide: float, state: State, c: FloatArray, bends: Bends) -> Grown:
+    """What is added to the half deadband now, by time, wear, speed and where the stem is; and the compliance there."""
     grown: float = wide + c[V_WEAR] * state[6]
     if c[V_STRIBECK] > 0.0:
         grown += c[V_STRIBECK] * np.exp(-state[4] / c[V_STRIBECK_SPEED])
-    return grown
+    if bends[0].size == 1:
+        return grown, grown, 1.0
+    step = c[V_TRAVEL] / (bends[0].size - 1)
+    closing, opening = _look_up(state[0], 0.0, step, bends[0]), _look_up(state[0], 0.0, step, bends[1])
+    return grown + closing, grown - opening, _look_up(state[0], 0.0, step, bends[2])
 
 
 @njit(inline="always", nogil=True, error_model="numpy")
@@ -180,14 +191,6 @@ def _move(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _stand(at: float, stops: FloatArray, elements: FloatArray, state: State) -> State:
-    """The state of a stem that rests at `at`, and so does what pulls at it."""
-    x = max(stops[2], min(stops[3], at))
-    elements += x - state[1]
-    return x, x, x, True, 0.0, state[5], state[6], state[7]
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def coupled_pass(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -197,18 +200,19 @@ def coupled_pass(
     stops: FloatArray,
     tables: Tables,
     plays: Plays,
+    bends: Bends,
     start: tuple[float, float],
-    marks: np.ndarray,
-    stands: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem, at rest at `stands` at `marks`. `stops`: play, stem; `start`: (x, w)."""
+    """Fills `out` (fine) with the stem. `stops`: of the play, of the stem; `start`: (x, w)."""
     elements = np.full(plays[0].size, start[1])
-    w, _ = _play_step(force[0], widening[0], (0.0, 0.0), (False, False), stops, tables, plays, elements)
     x = max(stops[2], min(stops[3], start[0]))
+    state = (x, start[1], start[1], True, 0.0, 0.0, 0.0, FOREVER)
+    grown = _half_band(widening[0], state, c, bends)
+    w, _ = _play_step(force[0], grown, (0.0, 0.0), (False, False), stops, tables, plays, elements)
     state = (x, w, w, True, 0.0, 0.0, 0.0, FOREVER)
     out[0] = x
-    last_h, m = -1.0, 0
+    last_h = -1.0
     lags = np.zeros((3, 2))
     modes = (c[V_STICK_SPEED] >= FOREVER, c[V_TARGET_STICKS] != 0.0)
     for i in range(1, time_s.size):
@@ -217,13 +221,10 @@ def coupled_pass(
             last_h = h
             _decays(h, c, lags)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            grown = _half_band(widening[f if widening.size > 1 else 0], state, c)
+            grown = _half_band(widening[f if widening.size > 1 else 0], state, c, bends)
             if c[V_IN_MOTION] != 0.0:
                 elements += c[V_IN_MOTION] * (state[0] - state[1])
             extra = _breakaway(state, c)
             w, slipped = _play_step(force[f], grown, extra, modes, stops, tables, plays, elements)
             state = _move(h, w, slipped, c, stops, lags, state)
-            if m < marks.size and f == marks[m]:
-                state = _stand(stands[m], stops, elements, state)
-                m += 1
             out[f] = state[0]

@@ -11,10 +11,6 @@ from numba import njit
 
 from logs.recording import FloatArray
 
-#: Fine points at which play and stem are set to a known position (int64, rising), and those positions; mostly none.
-Rests = tuple[np.ndarray, FloatArray]
-NO_RESTS: Rests = (np.zeros(0, dtype=np.int64), np.zeros(0))
-
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _straight_play(
@@ -26,8 +22,6 @@ def _straight_play(
     high: float,
     curves: FloatArray,
     w0: float,
-    marks: np.ndarray,
-    stands: FloatArray,
     out: FloatArray,
 ) -> None:
     """Adds `weight` times one element to `out`; `curves` is (slope, value at pressure 0) closing, then opening."""
@@ -35,13 +29,9 @@ def _straight_play(
     e = max(low, min(high, w0))
     varies = widening.size > 1
     band = spread + widening[0]
-    m = 0
     for f in range(force.size):
         if varies:
             band = spread + widening[f]
-        if m < marks.size and f == marks[m]:
-            e = stands[m]
-            m += 1
         bottom = max(low, min(high, b1 + k1 * (force[f] - band)))
         top = max(low, min(high, b2 + k2 * (force[f] + band)))
         e = max(bottom, min(top, e))
@@ -70,21 +60,15 @@ def _bent_play(
     closing: FloatArray,
     opening: FloatArray,
     w0: float,
-    marks: np.ndarray,
-    stands: FloatArray,
     out: FloatArray,
 ) -> None:
     """Adds `weight` times one element between two curves given as tables to `out`."""
     e = max(low, min(high, w0))
     varies = widening.size > 1
     band = spread + widening[0]
-    m = 0
     for f in range(force.size):
         if varies:
             band = spread + widening[f]
-        if m < marks.size and f == marks[m]:
-            e = stands[m]
-            m += 1
         bottom = max(low, min(high, _look_up(force[f] - band, p_first, p_step, closing)))
         top = max(low, min(high, _look_up(force[f] + band, p_first, p_step, opening)))
         e = max(bottom, min(top, e))
@@ -99,12 +83,8 @@ def play_target(
     spreads: FloatArray,
     weights: FloatArray,
     w0: float,
-    rests: Rests,
 ) -> FloatArray:
-    """Sum of the play elements, shape of `force`. `widening` is added to every half width: one number or one each.
-
-    `rests`: fine points at which every element is set to a known position first; only for one element.
-    """
+    """Sum of the play elements, shape of `force`. `widening` is added to every half width: one number or one each."""
     p_first, p_step, closing, opening = tables
     low, high = stops
     out = np.zeros(force.size)
@@ -113,10 +93,10 @@ def play_target(
         if straight:
             k1, k2 = (closing[1] - closing[0]) / p_step, (opening[1] - opening[0]) / p_step
             line = np.array([k1, closing[0] - k1 * p_first, k2, opening[0] - k2 * p_first])
-            _straight_play(force, widening, spread, weight, low, high, line, w0, *rests, out)
+            _straight_play(force, widening, spread, weight, low, high, line, w0, out)
         else:
             curves = (p_first, p_step, closing, opening)
-            _bent_play(force, widening, spread, weight, low, high, *curves, w0, *rests, out)
+            _bent_play(force, widening, spread, weight, low, high, *curves, w0, out)
     return out
 
 

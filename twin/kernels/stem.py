@@ -20,17 +20,14 @@ def stem_pass(
     low: float,
     high: float,
     x0: float,
-    marks: np.ndarray,
-    stands: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem, set to `stands` at `marks`; `lags_s`, `rates`: (closing, opening)."""
+    """Fills `out` (fine) with the stem; `lags_s`, `rates`: (closing, opening)."""
     x = max(low, min(high, x0))
     out[0] = x
     last_h = -1.0
     e_close = e_open = r_close = r_open = up = down = 0.0
     one_lag = lags_s[0] == lags_s[1]
-    m = 0
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
@@ -46,7 +43,4 @@ def stem_pass(
             slope_tau = (w_b - w_a) * reach
             new = w_b - slope_tau + (x - w_a + slope_tau) * decay
             x = max(low, min(high, max(x - down, min(x + up, new))))
-            if m < marks.size and f == marks[m]:
-                x = max(low, min(high, stands[m]))
-                m += 1
             out[f] = x

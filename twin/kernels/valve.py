@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.coupled import Plays, Tables, coupled_pass
+from twin.kernels.coupled import Bends, Plays, Tables, coupled_pass
 from twin.kernels.lag import elapsed_s, lagged
-from twin.kernels.play import NO_RESTS, Rests, plain_play, play_target
+from twin.kernels.play import plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.slots import (
     V_BREAKAWAY,
@@ -54,32 +54,19 @@ def valve_kernel(
     pressure: FloatArray,
     offsets: np.ndarray,
     c: FloatArray,
-    p_first: float,
-    p_step: float,
-    closing: FloatArray,
-    opening: FloatArray,
-    spreads: FloatArray,
-    weights: FloatArray,
-    x0: float,
-    w0: float,
+    tables: Tables,
+    plays: Plays,
+    bends: Bends,
+    start: tuple[float, float],
     out: FloatArray,
-    rests: Rests = NO_RESTS,
 ) -> None:
-    """Fills `out` with the stem position. `spreads[j]` widens the half deadband of play element j [pressure].
-
-    At the fine points `rests` play output and stem are set to known positions (twin/fit/rests.py).
+    """Fills `out` with the stem position. `plays`: by how much each element widens the half deadband [pressure], its
+    weight; `start`: stem and play output at the first row.
     """
-    force = _force(time_s, offsets, pressure, c, w0)
+    force = _force(time_s, offsets, pressure, c, start[1])
     widening = _widening(time_s, offsets, c)
-    tables = (float(p_first), float(p_step), closing, opening)
-    plays, start = (spreads, weights), (float(x0), float(w0))
-    _stem(time_s, offsets, force, widening, c, tables, plays, start, rests, out)
-    if rests[0].size and c[[share for share, _ in _CREEPS]].any():
-        # The positions are those of the creeping stem; what it lacks there is as the first pass has it just before.
-        crept = out.copy()
-        _creep(time_s, offsets, c, crept)
-        lacks = (out - crept)[np.maximum(rests[0] - 1, 0)]
-        _stem(time_s, offsets, force, widening, c, tables, plays, start, (rests[0], rests[1] + lacks), out)
+    tables = (float(tables[0]), float(tables[1]), *tables[2:])
+    _stem(time_s, offsets, force, widening, c, tables, plays, bends, (float(start[0]), float(start[1])), out)
     _creep(time_s, offsets, c, out)
 
 
@@ -91,21 +78,20 @@ def _stem(
     c: FloatArray,
     tables: Tables,
     plays: Plays,
+    bends: Bends,
     start: tuple[float, float],
-    rests: Rests,
     out: FloatArray,
 ) -> None:
     """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
     low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
-    # elements and a second lag have their own states, which only the joint loop can set together
-    if c[_COUPLING].any() or (rests[0].size and (plays[0].size > 1 or c[V_TAU_AFTER_S] > 0.0)):
+    if c[_COUPLING].any() or bends[0].size > 1:
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
-        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, start, *rests, out)
+        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, bends, start, out)
     else:
-        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1], rests)
+        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
-        stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], *rests, out)
+        stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], out)
 
 
 def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:

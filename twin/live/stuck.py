@@ -10,7 +10,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients
-from twin.kernels.coupled import State, _breakaway, _decays, _half_band, _move, _play_step
+from twin.kernels.coupled import Grown, State, _breakaway, _decays, _half_band, _move, _play_step
 from twin.plant import curve_tables
 from twin.slots import (
     FOREVER,
@@ -32,6 +32,7 @@ class Stuck:
         self._c = v
         self._tables = curve_tables(c)
         self._plays = (c.spreads, c.weights)
+        self._bends = c.stem_bends
         stem_low, stem_high = max(v[V_LOW], v[V_HARD_LOW]), min(v[V_HIGH], v[V_HARD_HIGH])
         self._stops = np.array([v[V_LOW], v[V_HIGH], stem_low, stem_high])
         self._elements = np.full(c.spreads.size, w0)
@@ -44,7 +45,8 @@ class Stuck:
         """The stem on the fine points of the row."""
         if not self._begun:
             self._begun = True
-            w, _ = self._play(float(force[0]), float(widening[0]), (0.0, 0.0), (False, False))
+            grown = _half_band(float(widening[0]), self._state, self._c, self._bends)
+            w, _ = self._play(float(force[0]), grown, (0.0, 0.0), (False, False))
             self._state = (self._state[0], w, w, *self._state[3:])
         step_s = (time_s[1] - time_s[0]) / offsets[1]
         _decays(step_s, self._c, self._lags)
@@ -59,12 +61,12 @@ class Stuck:
         c, state = self._c, self._state
         if c[V_IN_MOTION] != 0.0:
             self._elements += c[V_IN_MOTION] * (state[0] - state[1])
-        grown = _half_band(wide, state, c)
+        grown = _half_band(wide, state, c, self._bends)
         w, slipped = self._play(force, grown, _breakaway(state, c), self._modes)
         self._state = _move(step_s, w, slipped, c, self._stops, self._lags, state)
 
     def _play(
-        self, force: float, grown: float, extra: tuple[float, float], modes: tuple[bool, bool]
+        self, force: float, grown: Grown, extra: tuple[float, float], modes: tuple[bool, bool]
     ) -> tuple[float, bool]:
         elements = (self._stops, self._tables, self._plays, self._elements)
         w, slipped = _play_step(force, grown, extra, modes, *elements)

@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients
-from twin.kernels.play import NO_RESTS, plain_play, play_target
+from twin.kernels.play import plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
@@ -65,7 +65,7 @@ class Valve:
         self._before = Lag(float(c.valve[V_TAU_BEFORE_S]))
         self._force_tail = Lag(float(c.valve[V_FORCE_CREEP_TAU_S]))
         self._outer = float(c.valve[V_OUTER_CENTRE] + c.valve[V_OUTER_SLOPE] * w0)
-        self._mover: Mover = Stuck(c, x0, w0) if c.valve[_COUPLING].any() else Sliding(c, x0, w0)
+        self._mover: Mover = Stuck(c, x0, w0) if couples(c) else Sliding(c, x0, w0)
         tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
         self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c.valve[a] != 0.0]
 
@@ -122,14 +122,19 @@ class Sliding:
         """The stem on the fine points of the row."""
         target = np.zeros(force.size)
         for k, (spread, weight) in enumerate(self._shares):
-            one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k], NO_RESTS)
+            one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
             self._elements[k] = float(one[-1])
             target += weight * one
         target = self._after.follow(time_s, offsets, target)
         out = np.empty(force.size)
-        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, *NO_RESTS, out)
+        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, out)
         self._x = float(out[-1])
         return out
 
 
 _WHOLE = np.ones(1)
+
+
+def couples(c: Coefficients) -> bool:
+    """Whether play and stem act on each other."""
+    return bool(c.valve[_COUPLING].any() or c.stem_bends[0].size > 1)
