@@ -16,18 +16,22 @@ _HEAD_BYTES = 65_536
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """`headers` are made up ("1", "2", ...) when `has_header` is False; `units_row` is empty where there is none."""
+    """`headers` are made up ("1", "2", ...) when `has_header` is False; `units_row` is empty where there is none.
+
+    `titles` lines stand above the header: the name of the plant, the date, the number of rows.
+    """
 
     separator: str
     decimal: str
     headers: tuple[str, ...]
     has_header: bool
     units_row: tuple[str, ...] = ()
+    titles: int = 0
 
     @property
     def skipped_rows(self) -> int:
         """Rows at the top of the cleaned text that are not samples."""
-        return int(self.has_header) + int(bool(self.units_row))
+        return self.titles + int(self.has_header) + int(bool(self.units_row))
 
 
 def clean(data: bytes, where: str) -> bytes:
@@ -64,12 +68,27 @@ def sniff(text: bytes, where: str) -> Dialect:
         raise BadInput(f"{where}: the file is empty; a recording needs a header line and rows of numbers")
     separator = _separator(lines)
     cells = [split(line, separator) for line in lines]
+    titles = _titles(cells)
+    del cells[:titles]
     if len(cells[0]) < 2:
         raise BadInput(f"{where}: only one column found ('{lines[0][:60]}'); separate columns by comma, ; or tab")
     has_header = not all(_is_number(cell) for cell in cells[0])
     headers = cells[0] if has_header else [str(number + 1) for number in range(len(cells[0]))]
     units_row = cells[1] if has_header and len(cells) > 1 and _is_units_row(cells[1]) else []
-    return Dialect(separator, _decimal(text, separator), tuple(headers), has_header, tuple(units_row))
+    return Dialect(separator, _decimal(text, separator), tuple(headers), has_header, tuple(units_row), titles)
+
+
+def _titles(cells: list[list[str]]) -> int:
+    """How many lines stand above the header: those before the first one that is as wide as the samples are.
+
+    Only where that line is a header, without a number in it: rows that are too short must be named, not skipped.
+    """
+    widths = [len(line) for line in cells]
+    width = max(set(widths), key=widths.count)
+    first = widths.index(width)
+    if width < 2 or widths.count(width) < 3 or any(_NUMBER.fullmatch(cell) for cell in cells[first]):
+        return 0
+    return first
 
 
 def split(line: str, separator: str) -> list[str]:

@@ -71,7 +71,7 @@ def split_header(header: str, quantity: Quantity | None = None) -> Column:
 
 
 def assign(headers: Sequence[str], mapping: Mapping[Role, str], where: str) -> dict[Role, Column]:
-    """The column of each role: as `mapping` says, by name otherwise; the optional ones may be missing.
+    """The column of each role: as `mapping` says (header or number, from 1), by name otherwise; some may be missing.
 
     Raises: `BadInput` when a needed role has no column, or a name fits several, with the columns there are.
     """
@@ -104,6 +104,8 @@ def _mapped(role: Role, name: str, headers: Sequence[str], where: str) -> Column
             return split_header(same[0], QUANTITY[role])
         if len(same) > 1:
             raise BadInput(f"{where}: --map {role}={name} fits {_listed(same)}; give the full header")
+    if name.isdecimal() and 1 <= int(name) <= len(headers):  # no header reads so: it is the column's number
+        return split_header(headers[int(name) - 1], QUANTITY[role])
     raise BadInput(f"{where}: --map {role}={name}: no such column; the columns are {_listed(headers)}")
 
 

@@ -111,6 +111,8 @@ def _read_csv(path: Path, data: bytes) -> Table:
     names = _unique(dialect.headers, where)
     check_quotes(data, dialect, where)
     text, notes = _without_torn_tail(text, dialect)
+    if dialect.titles:
+        notes = (DataNote("lines above the header", "left out", dialect.titles), *notes)
     try:
         table = csv.read_csv(
             io.BytesIO(_body(text, dialect.skipped_rows)),

@@ -262,6 +262,28 @@ def test_a_file_without_header_is_mapped_by_number(tmp_path: Path) -> None:
     assert recording.command.tolist() == [3.0, 4.0] and recording.position.tolist() == [0.0, 0.1]
 
 
+def test_a_column_below_a_header_can_be_given_by_its_number(tmp_path: Path) -> None:
+    text = "t,回炼油 OP,stem\n0,3,0\n1,4,0.1\n"
+    recording = load(tmp_path, text, mapping="time=1,command=2,position=stem")
+    assert recording.command.tolist() == [3.0, 4.0] and recording.position.tolist() == [0.0, 0.1]
+    assert "no such column" in refusal(tmp_path, text, mapping="time=1,command=4,position=stem")
+
+
+TITLES = "Evaporator 5\nRows\t3\tmade by hand\n\n"
+
+
+def test_lines_above_the_header_are_left_out_and_said(tmp_path: Path) -> None:
+    rows = "time_s\tcommand_psi\tpressure_psi\tposition_in\n0\t3\t3\t0\n1\t4\t3.5\t0.1\n2\t4\t{}\t0.2\n"
+    recording = load(tmp_path, TITLES + rows.format("4"))
+    assert recording.n == 3 and "lines above the header | left out | 2" in said(recording)
+    assert "row 3 (line 7)" in refusal(tmp_path, TITLES + rows.format("4x"))
+
+
+def test_short_rows_under_a_header_are_not_taken_for_titles(tmp_path: Path) -> None:
+    message = refusal(tmp_path, "time_s,command_psi,position_in\n0,3,3,0\n1,4,3,0.1\n2,4,3,0.2\n")
+    assert "line 2 of the file: 4 cells, the header has 3" in message
+
+
 def test_a_run_its_csv_and_its_parquet_are_one_recording(tmp_path: Path) -> None:
     columns = valve_columns(300)
     columns["position_in"][7] = np.nan
