@@ -100,7 +100,9 @@ def _check(recordings: Sequence[Recording]) -> None:
         )
     moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
     if moved < 8.0 * max(fast_noise(each.position) for each in recordings):
-        raise BadInput(f"{first.name}: the position never leaves its noise; sweep over both curves (about 6 to 12 psi)")
+        raise BadInput(
+            f"{first.name}: the position never leaves its noise; identifying takes a record that moves over both curves"
+        )
 
 
 def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
@@ -120,12 +122,13 @@ def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequen
         return
     pressure = np.concatenate([t.pressure[t.grid.first][t.good] for t in tracks])
     names = ", ".join(recording.name for recording in recordings)
+    cause = "command" if all(recording.pressure is None for recording in recordings) else "pressure"
     if float(np.corrcoef(pressure, position)[0, 1]) < -0.3:
         raise JobFailed(
-            f"{names}: the position falls as the pressure rises; 0 must be the open end, so turn the position round"
+            f"{names}: the position falls as the {cause} rises; 0 must be the open end, so turn the position round"
         )
     raise JobFailed(
-        f"{names}: the position does not follow the pressure in any way that the model knows; check the columns"
+        f"{names}: the position does not follow the {cause} in any way that the model knows; check the columns"
     )
 
 
@@ -133,7 +136,10 @@ def _check_found(estimates: Sequence[Estimate], recordings: Sequence[Recording])
     known = {each.name for each in estimates if each.interval is not None}
     if "compliance" not in known and not {"a1", "a2"} <= known:
         names = ", ".join(recording.name for recording in recordings)
-        raise JobFailed(f"{names}: the curves do not show; sweep through both, such as `lostmotion sweep staircase`")
+        raise JobFailed(
+            f"{names}: the curves do not show: the record moves too little to tell where the stem starts to close, "
+            "where it is open again, and how stiff it is between; sweep through both, as `lostmotion sweep staircase` does"
+        )
 
 
 def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str, design: DesignModel) -> list[Estimate]:
