@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import sys
-from collections.abc import Callable, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -15,17 +16,14 @@ from app.session import Session
 
 if TYPE_CHECKING:
     from control.drive import Drive
-    from control.loop import Outcome, Sink
+    from control.loop import Loop, Outcome, Sink
     from control.plan import Plan
     from logs.stream import RunView
     from logs.writer import RunWriter
 
 
 WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
-
-
-#: How long one thread may keep the others of this process waiting [s].
-SWITCH_S = 0.0003
+SWITCH_S = 0.0003  # how long one thread may keep the others of this process waiting
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,24 +76,48 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
         record = stack.enter_context(RunWriter.create(out, _start(session, job), columns))
         if session.sealed is not None:
             write_commitment(record.folder, session.sealed)
-        view = _open_view(record, columns) if live else None
-        if view is not None:
+        sinks: list[Sink] = [record]
+        if live:
+            view = _open_view(record, columns)
             stack.callback(view.close)
+            sinks.append(view)
         display = stack.enter_context(RunDisplay(title))
         notes = KeyboardNotes()
         stack.callback(notes.close)
         hooks = Hooks(progress=display.show, notes=notes, check=stop.check)
-        sinks: tuple[Sink, ...] = (record,) if view is None else (record, view)
-        sinks = sinks if job.beside is None else (job.beside.around(sinks),)
-        loop = Loop(session.bench, session.clock, sinks, hooks, aux=tuple(session.aux_units))
-        begun = session.command_in_force
+        told = sinks if job.beside is None else [job.beside.around(sinks)]
+        loop = Loop(session.bench, session.clock, told, hooks, aux=tuple(session.aux_units))
         try:
-            outcome = supervised(loop, record, lambda: loop.run(job.plan, job.make_drive(begun), begun))
+            outcome = supervised(loop, record, lambda: _play(session, loop, job))
         except BaseException:
             display.close()
             echo(f"stopped after {loop.rows} samples; record: {record.folder}{_hint(job, record.folder)}", err=True)
             raise
     return Finished(record.folder, outcome)
+
+
+def _play(session: Session, loop: Loop, job: Job) -> Outcome:
+    begun = session.command_in_force
+    # Only now: making record and view has taken longer than a device's watchdog may be ready to wait.
+    session.bench.arm(job.plan.period_s)
+    with undisturbed():
+        return loop.run(job.plan, job.make_drive(begun), begun)
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """While open, the interpreter itself makes ticks as little late as it can.
+
+    A thread may hold it for 5 ms by default, and a full garbage collection walks over every library that is loaded.
+    """
+    before_s = sys.getswitchinterval()
+    sys.setswitchinterval(SWITCH_S)
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.unfreeze()
+        sys.setswitchinterval(before_s)
 
 
 def _hint(job: Job, folder: Path) -> str:
@@ -129,8 +151,6 @@ def _start(session: Session, job: Job) -> dict[str, object]:
 
 
 def _open_view(record: RunWriter, columns: Mapping[str, str]) -> RunView:
-    # Its writer may hold the interpreter for 5 ms by default; a tick of a fast loop cannot wait that long.
-    sys.setswitchinterval(SWITCH_S)
     from logs.stream import RunView
 
     view = RunView.open(record.start, columns)

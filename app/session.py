@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+DEADMAN_S = 2.0  # a command so much overdue means that the program hangs: the valve goes to safety without it
+
 
 @dataclass(frozen=True, slots=True)
 class Session:
@@ -146,7 +148,7 @@ def _at_port(profile: Profile, port: str, acknowledge: bool) -> Iterator[Session
     if acknowledge:
         latch.acknowledge()
     inner = ModbusBench(profile, port, clock, acknowledge=acknowledge)
-    with SafeBench(inner, profile.limits, clock, latch=latch) as bench:
+    with SafeBench(inner, profile.limits, clock, latch=latch, deadman_s=DEADMAN_S) as bench:
         yield Session(bench, clock, profile, {})
 
 

@@ -123,8 +123,22 @@ class ModbusBench:
                     "look at the valve, then give it back with `lostmotion set --acknowledge`"
                 )
             self._watchdog.clear()
-        self._armed = True
-        self._watchdog.arm(self.profile.safe_command)
+            self._watchdog.let_go()  # who ran before may have left it on, and our first command may be seconds away
+
+    def arm(self) -> None:
+        """From now on the device waits for us: call it when commands are about to come. Else the first one does it.
+
+        Raises: what the bus raises.
+        """
+        with self._lock:
+            self._armed = True
+            self._watchdog.arm(self.profile.safe_command)
+
+    def disarm(self) -> None:
+        """Once the valve is safe, the device need not wait for us any more. Never raises."""
+        with self._lock:
+            if self._armed and self._quietly(self._watchdog.let_go):
+                self._armed = False
 
     def _close(self) -> None:
         self._open = False
@@ -136,6 +150,8 @@ class ModbusBench:
             raise BadInput(f"the bench on {self._port} was opened for reading only")
         if not math.isfinite(command_psi):
             raise BadInput(f"command {command_psi} is not a number that a valve can be given")
+        if not self._armed:
+            self.arm()
         words = self._plan.command.to_words(command_psi, self._plan.device.word_order)
         commanded = self._plan.command.value(self._plan.command.counts(words, self._plan.device.word_order))
         with self._lock:

@@ -34,8 +34,9 @@ class WayOut:
 class SafeBench:
     """Any bench, held to its limits. Commands are clamped to range and slew; `commanded_psi` tells what was sent.
 
-    `latch`: the emergency stop that must be acknowledged first. `deadman_s`: when no `exchange` comes for so long in
-    real time, a thread of its own sends the valve to safety; None: only the device's watchdog does.
+    `latch`: the emergency stop that must be acknowledged first. `deadman_s`: when an `exchange` is overdue by so
+    much in real time, a thread of its own sends the valve to safety; None: only the device's watchdog does.
+    Both watch from `arm` on, or from the first `exchange`, until the valve has been made safe.
     Raises from `exchange`: `SafetyTrip`, after sending the valve to safety; what the bench raises.
     """
 
@@ -48,7 +49,8 @@ class SafeBench:
         self._limits = limits
         self._clock = clock
         self._latch = latch
-        self._deadman = Deadman(deadman_s, self._stalled) if deadman_s is not None else None
+        self._deadman_s = deadman_s
+        self._deadman: Deadman | None = None
         self._trip: str | None = None
         self._command = 0.0
         self._command_s: float | None = None
@@ -73,8 +75,6 @@ class SafeBench:
             held = getattr(self._bench, "held_command", None)
             self._command = self._bench.info.safe_command if held is None else held
             self._good_s = self._clock.now_s()
-            if self._deadman is not None:
-                self._deadman.start()
         except BaseException as error:  # entered or not: nobody else would leave it
             self._bench.__exit__(type(error), error, error.__traceback__)
             raise
@@ -83,8 +83,7 @@ class SafeBench:
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._deadman is not None:
-            self._deadman.stop()
+        self._rest()
         with shielded():
             status, reason = describe_way_out(error)
             safe = self._bench.make_safe(reason)
@@ -94,6 +93,26 @@ class SafeBench:
             finally:
                 if not safe:
                     self._shout(reason, error)
+
+    def arm(self, period_s: float = 0.0) -> None:
+        """Commands will come every `period_s` from now on: the device and the dead man's thread may expect them.
+
+        The last reading is fresh from now on: whatever took time since the bench was opened was not its fault.
+        Raises: what the bench raises.
+        """
+        arm = getattr(self._bench, "arm", None)
+        if arm is not None:
+            arm()
+        self._good_s = self._clock.now_s()
+        if self._deadman_s is not None and self._deadman is None:
+            self._deadman = Deadman(self._deadman_s + period_s, self._stalled)
+            self._deadman.start()
+
+    def _rest(self) -> None:
+        """Nobody expects commands any more."""
+        deadman, self._deadman = self._deadman, None
+        if deadman is not None:
+            deadman.stop()
 
     def exchange(self, command_psi: float) -> Sample:
         """Sends what the limits leave of the command and judges what comes back."""
@@ -106,6 +125,8 @@ class SafeBench:
         allowed, now_s = self._allowed(command_psi), self._clock.now_s()
         if self._deadman is not None:
             self._deadman.feed()
+        elif self._deadman_s is not None:
+            self.arm()
         sample = self._bench.exchange(allowed)
         if self._trip is not None:  # the dead man's thread acted while we waited
             raise SafetyTrip(self._trip)
@@ -115,8 +136,14 @@ class SafeBench:
         return sample
 
     def make_safe(self, reason: str) -> bool:
+        """As the bench does; once it is safe, nobody waits for commands before the next one comes."""
+        self._rest()
         self._command = self.info.safe_command
-        return self._bench.make_safe(reason)
+        safe = self._bench.make_safe(reason)
+        disarm = getattr(self._bench, "disarm", None)
+        if safe and disarm is not None:
+            disarm()
+        return safe
 
     def emergency_stop(self, reason: str) -> bool:
         """Safe now, and nothing moves again before somebody acknowledges it. True when the device confirmed."""

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import threading
+
 import pytest
 
 from app.session import open_bench
-from hal.clock import SteppedClock
-from hal.errors import BadInput, PortFault
-from hal.profile import load_profile
+from hal.clock import RealClock, SteppedClock
+from hal.errors import BadInput, PortFault, SafetyTrip
+from hal.profile import Profile, load_profile
+from sim_device.physics.catalog import make_physics
+from sim_device.server import VirtualDevice
 
 
 def test_the_virtual_valve_answers_over_a_pseudo_terminal_in_stepped_time() -> None:
@@ -52,3 +56,20 @@ def test_a_profile_may_be_given_as_it_is_and_its_unit_chooses_the_plant() -> Non
 def test_a_port_that_is_not_there() -> None:
     with pytest.raises(PortFault, match="/dev/absent"), open_bench("/dev/absent"):
         pass
+
+
+def test_on_a_real_port_a_dead_mans_thread_watches_the_loop(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("app.session.DEADMAN_S", 0.05)
+    content = load_profile("virtual").model_dump(mode="json", exclude_none=True)
+    content["devices"]["bench"].pop("watchdog")  # nobody else would notice
+    profile = Profile.model_validate(content)
+    acted = threading.Event()
+    with VirtualDevice(profile, make_physics("thesis", 1), RealClock()) as device:
+        with pytest.raises(SafetyTrip, match="the loop stalled"), open_bench(device.port, profile) as session:
+            make_safe = session.bench.bench.make_safe
+            monkeypatch.setattr(session.bench.bench, "make_safe", lambda why: (make_safe(why), acted.set())[0])
+            assert session.bench.exchange(12.0).readback_psi == 12.0
+            assert acted.wait(10.0)
+            assert device.rig.command == 0.0
+            session.bench.exchange(12.0)
+        assert device.rig.command == 0.0

@@ -15,6 +15,7 @@ from hal.fake import FirstOrder
 from hal.framing import seal
 from hal.modbus_bench import ModbusBench
 from hal.profile import Profile, load_profile, profile_names
+from hal.safety import SafeBench
 from hal.sample import Quality
 from hal.tick import TickPlan
 from sim_device.device import Options
@@ -56,6 +57,7 @@ def tick(bench: Bench, clock: SteppedClock, command: float, dt_s: float = 0.1):
 def test_one_transaction_a_tick_brings_everything(backend) -> None:
     profile = VIRTUAL.model_copy(update={"serial": VIRTUAL.serial.model_copy(update={"backend": backend})})
     with virtual() as (device, clock), bench_at(device, clock, profile) as bench:
+        bench.arm()
         before = bench.bus.stats.transactions
         for _ in range(30):
             sample = tick(bench, clock, 8.0)
@@ -105,6 +107,29 @@ def test_the_devices_watchdog_vents_and_a_person_has_to_acknowledge() -> None:
         with pytest.raises(SafetyTrip, match="lostmotion set --acknowledge"):
             bench_at(device, clock).__enter__()
         with bench_at(device, clock, acknowledge=True) as bench:
+            assert tick(bench, clock, 5.0).readback_psi == 5.0
+
+
+def test_the_device_waits_for_nobody_before_the_first_command_and_after_the_last() -> None:
+    with virtual() as (device, clock), SafeBench(bench_at(device, clock), VIRTUAL.limits, clock) as bench:
+        clock.sleep_until(clock.now_s() + 60.0)  # opening a record and a view may take long
+        bench.arm(0.1)
+        assert device.rig.watchdog.timeout_s == 2.0
+        tick(bench, clock, 12.0)
+        assert bench.make_safe("normal end")
+        clock.sleep_until(clock.now_s() + 60.0)  # so may closing them
+        assert tick(bench, clock, 5.0).readback_psi == 5.0
+        assert device.rig.watchdog.timeout_s == 2.0, "the next command has armed it again"
+
+
+def test_acknowledging_ends_the_watch_that_somebody_else_has_left_on() -> None:
+    with virtual() as (device, clock):
+        with pytest.raises(SafetyTrip), bench_at(device, clock) as bench:
+            tick(bench, clock, 12.0, dt_s=2.5)
+            tick(bench, clock, 12.0)
+        device.rig.watchdog.timeout_s = 2.0
+        with bench_at(device, clock, acknowledge=True) as bench:
+            clock.sleep_until(clock.now_s() + 60.0)
             assert tick(bench, clock, 5.0).readback_psi == 5.0
 
 

@@ -123,10 +123,20 @@ def test_the_dead_mans_thread_acts_when_the_loop_stalls() -> None:
 
 def test_the_dead_mans_thread_ends_with_the_bench() -> None:
     rig = Rig()
-    with SafeBench(rig.fake, LIMITS, rig.clock, deadman_s=60.0):
-        assert any(thread.name == "deadman" for thread in threading.enumerate())
-    assert not any(thread.name == "deadman" for thread in threading.enumerate())
-    assert rig.fake.reasons[0] == "normal end"
+
+    def watching() -> bool:
+        return any(thread.name == "deadman" for thread in threading.enumerate())
+
+    with SafeBench(rig.fake, LIMITS, rig.clock, deadman_s=60.0) as safe:
+        assert not watching(), "nothing moves before the first command"
+        safe.exchange(9.0)
+        assert watching()
+        safe.make_safe("between two runs")
+        assert not watching()
+        safe.arm(0.1)
+        assert watching()
+    assert not watching()
+    assert rig.fake.reasons[-2] == "normal end"
 
 
 def test_every_exchange_feeds_the_dead_mans_thread() -> None:
