@@ -138,7 +138,7 @@ def _check_found(estimates: Sequence[Estimate], recordings: Sequence[Recording])
         names = ", ".join(recording.name for recording in recordings)
         raise JobFailed(
             f"{names}: the curves do not show: the record moves too little to tell where the stem starts to close, "
-            "where it is open again, and how stiff it is between; sweep through both, as `lostmotion sweep staircase` does"
+            "where it is open again and how stiff it is between; sweep through both, as with `lostmotion sweep ramp`"
         )
 
 
