@@ -54,7 +54,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The DAQ refreshes the reading more slowly than it is polled.",
     equations="y(t) = x(n period + phase) until the next refresh",
-    source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997), ch. 7 (sample and hold)",
+    source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997; sample and hold)",
     forms=(Form("periodic", (_PERIOD, _PHASE), _apply, _seen),),
     twins=("sensor_lag",),
 )

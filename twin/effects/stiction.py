@@ -117,7 +117,7 @@ EFFECT = Effect(
     "has to break away the other way in any case; target_sticks: the target w itself sticks below the stick speed, and "
     "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
     "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
-    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4503; "
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4549; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck, growth at rest)",
     forms=(
         Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
