@@ -28,7 +28,7 @@ class InversePi(Law[InverseState]):
     inverse, adapt to the readings (observer); the integral runs while the error is within `window_in` and starts anew
     with every larger step. `kp` is a plain number, `ki` is in 1/s.
     Source: the inverse of Tao and Kokotovic, "Adaptive Control of Systems with Actuator and Sensor Nonlinearities",
-    1996, chapter 3; the adaptation is an observer's, not theirs.
+    1996; the adaptation is an observer's, not theirs.
     """
 
     kp: float = 0.0

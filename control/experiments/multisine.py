@@ -19,7 +19,7 @@ class Multisine(Experiment):
 
     The sum stays within `amplitude` of the centre. Of 50 draws of phases that with the lowest crest factor is taken.
     One step is one period, so that periods can be compared with each other.
-    Source: random-phase odd multisine, Pintelon and Schoukens, "System Identification", 2nd edition, 2012, section 5.2.
+    Source: random-phase odd multisine, Pintelon and Schoukens, "System Identification", 2nd edition, 2012.
     """
 
     kind: ClassVar[str] = "multisine"
