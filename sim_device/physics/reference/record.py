@@ -26,9 +26,9 @@ class Build:
     Known: diaphragm area (Warren Controls DL49) and travel (thesis). Preload, spring rate and sliding friction follow
     from the thesis's table 2-1 and the area. Of literature's order: mass and Stribeck speed (Kayihan & Doyle 2000, and
     Garcia 2008, for a 100 in2 valve: 1.4 kg, 0.01 in/s). Air: ISO 6358, with conductances of the order that data sheets
-    give for E/P converters of some 5 scfm and for 4 mm tube. The rest (volumes, presliding stiffness, packing viscosity,
-    hydraulic speed control, sensor electronics) is chosen here, plausible, not measured on any valve; with it the stem
-    has the time constant and the highest speed of the thesis's.
+    give for E/P converters of some 5 scfm and for 4 mm tube. The rest (volumes, presliding stiffness, the viscosity of
+    the packing, hydraulic speed control, sensor electronics) is chosen here, plausible, not measured on any valve; with
+    it the stem has the time constant and the highest speed of the thesis's.
     """
 
     # E/P converter
