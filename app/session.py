@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -142,12 +143,14 @@ def _at_port(profile: Profile, port: str, acknowledge: bool) -> Iterator[Session
     from hal.clock import RealClock
     from hal.latch import Latch
     from hal.modbus_bench import ModbusBench
+    from hal.reopen import Reopening
     from hal.safety import SafeBench
 
     clock, latch = RealClock(), Latch.of_port(port)
     if acknowledge:
         latch.acknowledge()
-    inner = ModbusBench(profile, port, clock, acknowledge=acknowledge)
+    reopening = Reopening(say=partial(click.echo, err=True))
+    inner = ModbusBench(profile, port, clock, acknowledge=acknowledge, reopening=reopening)
     with SafeBench(inner, profile.limits, clock, latch=latch, deadman_s=DEADMAN_S) as bench:
         yield Session(bench, clock, profile, {})
 

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 from typing import TYPE_CHECKING
+
+import click
 
 if TYPE_CHECKING:
     from hal.clock import Clock
@@ -29,13 +32,15 @@ def open_to_look(
     from hal.errors import BadInput
     from hal.modbus_bench import ModbusBench
     from hal.profile import load_profile
+    from hal.reopen import Reopening
 
     found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
     if port is not None:
         if physics or effects:
             raise BadInput("--physics and --effect belong to the virtual valve; leave them out with --port")
         clock: Clock = RealClock()
-        with ModbusBench(found, port, clock, read_only=True) as bench:
+        reopening = Reopening(say=partial(click.echo, err=True))
+        with ModbusBench(found, port, clock, read_only=True, reopening=reopening) as bench:
             yield bench, clock
         return
     from app.session import _parse_effects as parse_effects

@@ -171,5 +171,7 @@ class PymodbusLine:
         return data
 
     def _run(self, work: Coroutine[Any, Any, bool], timeout_s: float) -> bool:
-        assert self._loop is not None, "the line is not open"
+        if self._loop is None:
+            work.close()
+            raise PortFault(f"port {self.name} is not open")
         return asyncio.run_coroutine_threadsafe(work, self._loop).result(timeout_s)

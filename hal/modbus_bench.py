@@ -8,22 +8,23 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Self
 
-from hal.assemble import NO_VALUE, Replies, assemble
+from hal.assemble import Replies, assemble
 from hal.bench import BenchInfo
 from hal.clock import Clock
 from hal.connect import make_bus
-from hal.errors import BadInput, DeviceRefused, LostMotionError, SafetyTrip, WireFault
+from hal.errors import BadInput, DeviceRefused, LostMotionError, PortFault, SafetyTrip, WireFault
 from hal.freshness import Freshness
 from hal.identity import check_identity
 from hal.pdu import Request
 from hal.profile import Profile
+from hal.readback import ReadbackCheck
+from hal.reopen import Reopening
 from hal.reply import Bus, Reply
 from hal.sample import Quality, Sample
 from hal.tick import min_period_s, plan_tick
-from hal.watchdog import WatchdogControl
+from hal.watchdog import WatchdogControl, check_status
 
 _BUSY = (5, 6)  # exceptions that ask for patience; the next tick asks again
-_MISMATCHES = 3  # ticks in a row in which the device may hold another command than the one it was sent
 _SAFE_TRIES = 3
 
 
@@ -33,6 +34,7 @@ class ModbusBench:
     `margin_s`: how much longer than wire and device need an answer may take [s].
     `pacing` and `backend` override the profile's.
     `acknowledge`: a person has looked at the valve; a device that has taken over is given back to us.
+    `reopening`: how long a port that has gone is tried to be opened again, so that the valve can be made safe.
     `read_only`: nothing is ever written, on entering and leaving neither; only `observe` works.
     A tick without a trusted answer is a sample whose readings are `MISSING`; the safety layer counts them.
     """
@@ -49,6 +51,7 @@ class ModbusBench:
         acknowledge: bool = False,
         read_only: bool = False,
         bus: Bus | None = None,
+        reopening: Reopening | None = None,
     ) -> None:
         if pacing is not None:
             serial = profile.serial.model_copy(update={"pacing": pacing})
@@ -64,7 +67,8 @@ class ModbusBench:
         self._freshness = Freshness()
         self._lock = threading.RLock()  # the dead man's thread may send the valve to safety in the middle of a tick
         self._identity: dict[str, str] = {}
-        self._mismatches = 0
+        self._readback = ReadbackCheck(profile, self._plan, port)
+        self._reopening = reopening or Reopening()
         self._open = False
         self._armed = False
         self.held_command: float | None = None  # what the device held when we came
@@ -107,11 +111,14 @@ class ModbusBench:
         finally:
             self._close()
 
-    def _start(self) -> None:
+    def _identify(self) -> None:
         for name, device in self.profile.devices.items():
             prefix = f"{name}." if len(self.profile.devices) > 1 else ""
             said = check_identity(self.bus, device, self._port)
             self._identity |= {prefix + key: text for key, text in said.items()}
+
+    def _start(self) -> None:
+        self._identify()
         # Proves that every signal can be read, before the first command.
         self.held_command = self._observe(strict=True, freshness=Freshness()).readback_psi
         if self._read_only:
@@ -137,8 +144,7 @@ class ModbusBench:
     def disarm(self) -> None:
         """Once the valve is safe, the device need not wait for us any more. Never raises."""
         with self._lock:
-            if self._armed and self._quietly(self._watchdog.let_go):
-                self._armed = False
+            self._armed = self._armed and not self._quietly(self._watchdog.let_go)
 
     def _close(self) -> None:
         self._open = False
@@ -186,8 +192,22 @@ class ModbusBench:
         return self._open if self.profile.safe_direction == "hold" else self.vent()
 
     def vent(self) -> bool:
-        """Sends the safe command, up to three times; True when the device confirmed it. Never raises."""
-        return any(self._open and self._quietly(self._send_safe) for _ in range(_SAFE_TRIES))
+        """Sends the safe command up to three times, reopening a port that has gone; True: confirmed. Never raises."""
+        for _ in range(_SAFE_TRIES):
+            try:
+                if self._open and self._send_safe():
+                    return True
+            except PortFault as gone:
+                if not self.reopen(gone):
+                    return False
+            except (LostMotionError, OSError):
+                continue
+        return False
+
+    def reopen(self, gone: PortFault) -> bool:
+        """Waits for the port to come back, with the same device behind it. Never raises."""
+        with self._lock:
+            return self._open and self._reopening.again(self.bus, self._identify, gone)
 
     def emergency_stop(self) -> bool:
         """Makes the device itself put out its safe value and ignore us, where it can; else the safe command."""
@@ -202,7 +222,7 @@ class ModbusBench:
             readback = self.observe().readback_psi
         if self.profile.signals.readback is None:
             return True
-        return readback is not None and abs(readback - self.profile.safe_command) <= self._tolerance()
+        return readback is not None and abs(readback - self.profile.safe_command) <= self._readback.tolerance
 
     def _quietly(self, action: Callable[[], bool | None]) -> bool:
         """On the way out a fault must not hide the reason for leaving, nor keep the port open."""
@@ -223,28 +243,7 @@ class ModbusBench:
 
     def _check(self, sample: Sample) -> None:
         """What the device said besides the measurement. Raises: `SafetyTrip`."""
-        status = sample.aux.get("watchdog_status")
-        if status is not None and not status.quality & NO_VALUE and status.value != 0:
-            raise SafetyTrip(
-                f"the device on {self._port} has put its output to the safe value (status {status.value:g}): it heard "
-                "nothing for too long, or an emergency stop; look at the valve, then `lostmotion set --acknowledge`"
-            )
+        check_status(sample.aux.get("watchdog_status"), self._port)
         if sample.position.quality & Quality.RESTARTED:
             self._watchdog.arm(self.profile.safe_command)  # a restart has made it forget
-        if sample.readback_psi is None:
-            return
-        wrong = abs(sample.readback_psi - sample.commanded_psi) > self._tolerance()
-        self._mismatches = self._mismatches + 1 if wrong else 0
-        if self._mismatches >= _MISMATCHES:
-            unit = self.profile.command_unit
-            raise SafetyTrip(
-                f"the device on {self._port} was sent {sample.commanded_psi:.4g} {unit} and holds "
-                f"{sample.readback_psi:.4g} {unit}, {_MISMATCHES} ticks in a row: does somebody else command it?"
-            )
-
-    def _tolerance(self) -> float:
-        if self.profile.readback_tolerance is not None:
-            return self.profile.readback_tolerance
-        limits, readback = self.profile.limits, self.profile.signals.readback
-        counts = max(self._plan.command.resolution(), readback.resolution() if readback else 0.0)
-        return 2.0 * counts + 1e-6 * (limits.command_max - limits.command_min)
+        self._readback.judge(sample.commanded_psi, sample.readback_psi)

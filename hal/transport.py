@@ -49,6 +49,12 @@ class FdTransport:
         self._writable = select.poll()
         self._writable.register(fd, select.POLLOUT)
 
+    def _detach(self) -> None:
+        """A closed descriptor's number may soon be somebody else's file."""
+        self._fd = -1
+        self._readable = select.poll()
+        self._writable = select.poll()
+
     def read(self, timeout_s: float) -> bytes:
         # Rounding up keeps a short rest of a timeout from becoming a busy loop.
         if not self._readable.poll(math.ceil(timeout_s * 1000.0) if timeout_s > 0.0 else 0):
@@ -104,6 +110,7 @@ class SerialTransport(FdTransport):
         self._attach(port.fileno())
 
     def close(self) -> None:
+        self._detach()
         if self._serial is not None:
             with contextlib.suppress(OSError):
                 self._serial.close()  # type: ignore[attr-defined]
@@ -134,6 +141,7 @@ class TcpTransport(FdTransport):
         self._attach(link.fileno())
 
     def close(self) -> None:
+        self._detach()
         if self._socket is not None:
             self._socket.close()
             self._socket = None

@@ -2,10 +2,22 @@
 
 from __future__ import annotations
 
+from hal.assemble import NO_VALUE
 from hal.device import Device, Watchdog
+from hal.errors import SafetyTrip
 from hal.pdu import Request, read_coils, read_registers, write_coil, write_register, write_registers
 from hal.register import Register
 from hal.reply import Bus
+from hal.sample import Reading
+
+
+def check_status(status: Reading | None, where: str) -> None:
+    """Raises: `SafetyTrip` when the device at `where` says in a tick that it has taken over."""
+    if status is not None and not status.quality & NO_VALUE and status.value != 0:
+        raise SafetyTrip(
+            f"the device on {where} has put its output to the safe value (status {status.value:g}): it heard "
+            "nothing for too long, or an emergency stop; look at the valve, then `lostmotion set --acknowledge`"
+        )
 
 
 class WatchdogControl:

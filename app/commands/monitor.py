@@ -28,14 +28,17 @@ def command(
 ) -> None:
     """Show the readings of a bench until Ctrl-C, or --count of them; nothing is written and the valve stays as it is.
 
+    A port that is unplugged is waited for, ten seconds; its readings go on when the same device is back.
     With --count the virtual valve is read in stepped time, without waiting.
     """
     from app.readings import header, line, sample_row
     from app.watch import open_to_look
-    from hal.errors import BadInput
+    from hal.errors import BadInput, PortFault
+    from hal.signals import stop_signals
 
     stepped = count is not None and not real_time
-    with open_to_look(port, profile, physics=physics, seed=seed, effects=effects, stepped=stepped) as (bench, clock):
+    opening = open_to_look(port, profile, physics=physics, seed=seed, effects=effects, stepped=stepped)
+    with stop_signals() as stop, opening as (bench, clock):
         unit, least_s = bench.info.command_unit, bench.info.min_period_s
         if period_s < least_s:
             raise BadInput(f"--period {period_s:g} s is shorter than the line can carry; the least is {least_s:.4g} s")
@@ -43,7 +46,13 @@ def command(
             click.echo(header(unit))
         began_s, tick = clock.now_s(), 0
         while count is None or tick < count:
+            stop.check()
             clock.sleep_until(began_s + tick * period_s)
-            sample = bench.observe()
+            try:
+                sample = bench.observe()
+            except PortFault as gone:
+                if not bench.reopen(gone):
+                    raise
+                continue
             click.echo(json.dumps(sample_row(sample, unit)) if as_json else line(sample, began_s))
             tick += 1
