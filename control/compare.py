@@ -9,6 +9,7 @@ import numpy as np
 
 from control.controller import make_controller
 from control.design import DesignModel
+from control.held_out import held_out
 from control.metrics import Score, score
 from control.scenarios import SCENARIOS, Scenario
 from control.trial import Opened, Trace, run_trial
@@ -26,6 +27,13 @@ class Job:
     seed: int
     period_s: float
     design: DesignModel
+    held_out: bool = False
+
+    @property
+    def asked(self) -> Scenario:
+        """The scenario as it is played."""
+        scenario = SCENARIOS[self.scenario]
+        return held_out(scenario, self.seed) if self.held_out else scenario
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,30 +45,38 @@ class Result:
 
 
 def jobs(
-    controllers: Iterable[str], scenarios: Iterable[str], seeds: int, period_s: float, design: DesignModel
+    controllers: Iterable[str],
+    scenarios: Iterable[str],
+    seeds: Iterable[int],
+    period_s: float,
+    design: DesignModel,
+    held_out: bool = False,
 ) -> list[Job]:
     """Every combination."""
-    names = list(scenarios)
-    return [Job(c, s, seed, period_s, design) for c in controllers for s in names for seed in range(seeds)]
+    names, numbers = list(scenarios), list(seeds)
+    return [Job(c, s, seed, period_s, design, held_out) for c in controllers for s in names for seed in numbers]
 
 
 def play(job: Job, open_bench: BenchFactory) -> Trace:
     """Runs a job's trial."""
-    scenario = SCENARIOS[job.scenario]
-    controller = make_controller(job.controller, job.design)
+    scenario, controller = job.asked, make_controller(job.controller, job.design)
     return run_trial(open_bench(scenario, job.seed), controller, scenario.targets(job.period_s), job.period_s)
 
 
 def run_job(job: Job, open_bench: BenchFactory) -> Result:
     """Runs a job's trial and scores it."""
-    scenario = SCENARIOS[job.scenario]
+    scenario = job.asked
     return Result(job, score(play(job, open_bench), scenario, true_valve(scenario)))
 
 
 def true_valve(scenario: Scenario) -> DesignModel:
-    """The numbers of the scenario's valve: the thesis's, with the scenario's replaced."""
+    """The numbers of the scenario's valve as its gauge shows it: the thesis's, with the scenario's replaced."""
     changed = {NUMBERS[name]: value for name, value in scenario.numbers.items() if name in NUMBERS}
-    return replace(DesignModel(), **changed)  # type: ignore[arg-type]
+    valve: DesignModel = replace(DesignModel(), **changed)  # type: ignore[arg-type]
+    gain = scenario.reading_gain
+    return replace(
+        valve, compliance=gain * valve.compliance, rate_limit=gain * valve.rate_limit, travel=gain * valve.travel
+    )
 
 
 def summary(results: Sequence[Result]) -> dict[str, dict[str, float]]:
@@ -76,6 +92,7 @@ def summary(results: Sequence[Result]) -> dict[str, dict[str, float]]:
             "peak_worst": max(s.peak for s in scores),
             "settling_s": _median(s.settling_s for s in scores),
             "ratio": _median(s.ratio for s in scores),
+            "close": float(np.mean([s.close for s in scores])),
             "unsettled": float(np.mean([s.unsettled for s in scores])),
             "overshoot": max(s.overshoot for s in scores),
             "limit_cycles": float(np.mean([s.cycle > 0.0 for s in scores])),
@@ -105,6 +122,7 @@ def as_json(results: Sequence[Result]) -> dict[str, object]:
             "controller": r.job.controller,
             "scenario": r.job.scenario,
             "seed": r.job.seed,
+            "held_out": r.job.held_out,
             **plain(asdict(r.score)),
         }
         for r in results

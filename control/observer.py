@@ -73,7 +73,7 @@ class Observer:
         """At rest at the reading; edges from the design, moved where the reading contradicts them."""
         d = self.design
         w = min(max(seen.position_in, 0.0), d.travel)
-        return self._consistent(self._stopped(self._first(seen, w)))
+        return self._consistent(self.on_stop(self._first(seen, w)))
 
     def _first(self, seen: Seen, w: float) -> Inside:
         d, line = self.design, no_dead_time(seen.commanded_psi)
@@ -90,7 +90,8 @@ class Observer:
         acts = keep
         for command_psi in keep.line.queued:
             acts = self.ahead(acts, command_psi, dt_s)
-        return keep, acts
+        newest_psi, share = keep.line.rest
+        return keep, self.ahead(acts, newest_psi, share * dt_s) if share else acts
 
     def correct(self, inside: Inside, seen: Seen, dt_s: float, omega: float) -> Inside:
         """The estimate for the instant of the reading, after looking at it."""
@@ -103,7 +104,7 @@ class Observer:
         running = abs(inside.w - inside.x) > d.rate_limit * d.tau_s
         if running and push * (inside.w - inside.x) > 0.0:
             push = 0.0  # faster than the limit says nothing of how far the play output is ahead
-        moved = self._stopped(replace(self._converter(inside, pressure_error, seen, dt_s), p=p, x=x))
+        moved = self.on_stop(replace(self.learn_converter(inside, pressure_error, seen, dt_s), p=p, x=x))
         if moved.w <= 0.0 or moved.w >= d.travel:
             return self._at_stop(moved, push)
         closing, opening = self.contact(inside)
@@ -115,11 +116,13 @@ class Observer:
             moved = replace(moved, w=inside.w + push)
         return self._consistent(moved)
 
-    def _converter(self, inside: Inside, pressure_error: float, seen: Seen, dt_s: float) -> Inside:
+    def learn_converter(self, inside: Inside, pressure_error: float, seen: Seen, dt_s: float) -> Inside:
         """Dead time, and (by normalized least mean squares, near the command) zero and gain error, as learned."""
         share = 1.0 - math.exp(-dt_s / self.design.ep_tau_s) if self.design.ep_tau_s > 0.0 else 1.0
         before_psi, command_psi = inside.seen_psi, inside.line.arriving
-        line = inside.line.judged(seen.pressure_psi, lambda u: before_psi + share * (inside.settles(u) - before_psi))
+        line = replace(inside.line, keep=1.0 - share).judged(
+            seen.pressure_psi, lambda u: before_psi + share * (inside.settles(u) - before_psi)
+        )
         moved = replace(inside, line=line.and_sent(seen.commanded_psi), seen_psi=seen.pressure_psi)
         if abs(inside.settles(command_psi) - inside.p) > 0.7:
             return moved
@@ -148,7 +151,7 @@ class Observer:
             w = w_next
         return replace(inside.turned(command_psi), p=p, w=w, x=x)
 
-    def _stopped(self, inside: Inside) -> Inside:
+    def on_stop(self, inside: Inside) -> Inside:
         """The play output on an end stop, where it is next to it and the pressure does not hold it off."""
         d, near_in = self.design, 0.01 * self.design.travel
         if inside.w <= near_in and inside.p <= inside.a2 + inside.w / d.compliance:

@@ -9,6 +9,7 @@ from types import MappingProxyType
 import numpy as np
 import numpy.typing as npt
 
+from control.fastest import Supply
 from hal.errors import BadInput
 
 FloatArray = npt.NDArray[np.float64]
@@ -32,8 +33,6 @@ class Segment:
 class Scenario:
     """A target profile on a valve. `numbers` replace design numbers of the valve (not of the controller's design),
     `effects` are imperfections by name with sizes in their natural unit, `noise` scales the reading noise.
-
-    `reading_only`: the sensor itself is wrong, so that errors are judged on the reading; no controller can do better.
     """
 
     name: str
@@ -42,7 +41,20 @@ class Scenario:
     numbers: Mapping[str, float] = field(default_factory=dict)
     effects: Mapping[str, float] = field(default_factory=dict)
     noise: float = 1.0
-    reading_only: bool = False
+
+    @property
+    def reading_gain(self) -> float:
+        """Reading over true position; where it is not 1, errors are judged on the reading: nobody can know better."""
+        return 1.0 + self.effects.get("lvdt_calibration/gain", 0.0)
+
+    @property
+    def supply(self) -> Supply:
+        """What the converter of this valve can do."""
+        span_psi = self.effects.get("ep_calibration/span", 0.0)
+        droop_psi = self.effects.get("supply_saturation/droop", 0.0)
+        ceiling_psi = 15.0 - 0.9 * droop_psi if droop_psi else float("inf")
+        full_psi, empty_psi = (u + span_psi * (u - 3.0) / 12.0 for u in (20.0, 0.0))
+        return Supply(full_psi, empty_psi, ceiling_psi, self.effects.get("dead_time", 0.0))
 
     def targets(self, period_s: float) -> FloatArray:
         """One target per tick [in]."""
@@ -81,12 +93,8 @@ SCENARIOS: Mapping[str, Scenario] = MappingProxyType(
             Scenario("noise", "reading noise four times as large", MIXED, noise=4.0),
             Scenario("ep_plus", "converter span 3 % high", MIXED, effects={"ep_calibration/span": 0.36}),
             Scenario("ep_minus", "converter span 3 % low", MIXED, effects={"ep_calibration/span": -0.36}),
-            Scenario(
-                "lvdt_plus", "LVDT gain 3 % high", MIXED, effects={"lvdt_calibration/gain": 0.03}, reading_only=True
-            ),
-            Scenario(
-                "lvdt_minus", "LVDT gain 3 % low", MIXED, effects={"lvdt_calibration/gain": -0.03}, reading_only=True
-            ),
+            Scenario("lvdt_plus", "LVDT gain 3 % high", MIXED, effects={"lvdt_calibration/gain": 0.03}),
+            Scenario("lvdt_minus", "LVDT gain 3 % low", MIXED, effects={"lvdt_calibration/gain": -0.03}),
             Scenario("deadband_plus", "deadband 20 % wider than designed", MIXED, numbers={"a1": 9.076, "a2": 5.524}),
             Scenario(
                 "deadband_minus", "deadband 20 % narrower than designed", MIXED, numbers={"a1": 8.484, "a2": 6.116}

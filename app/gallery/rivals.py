@@ -13,6 +13,7 @@ from app.rivals import run_all
 from control.compare import Result, by_scenario, jobs, summary
 from control.controller import controller_names
 from control.design import DesignModel
+from control.held_out import FIRST_SEED
 from control.scenarios import SCENARIOS
 
 if TYPE_CHECKING:
@@ -44,8 +45,12 @@ def _dots(canvas: Canvas, results: Sequence[Result], key: str) -> None:
 
 
 def compare_all(processes: int = 2) -> list[Result]:
-    """Every controller, every scenario, one seed."""
-    return list(run_all(jobs(controller_names(), SCENARIOS, 1, 0.1, DesignModel()), processes))
+    """Every controller, every scenario, two held-out seeds."""
+    return list(
+        run_all(
+            jobs(controller_names(), SCENARIOS, range(FIRST_SEED, FIRST_SEED + 2), 0.1, DesignModel(), True), processes
+        )
+    )
 
 
 def figure_rivals(processes: int = 2) -> Entry:

@@ -48,7 +48,7 @@ def closed_loop(name: str, targets: list[float], **settings: float) -> tuple[lis
 
 
 def test_the_thesis_is_there_and_rivals_besides() -> None:
-    assert set(NAMES) >= THESIS | {"inverse_pi", "prandtl_ishlinskii", "scheduled_pi", "mpc", "overdrive"}
+    assert set(NAMES) >= THESIS | {"inverse_pi", "prandtl_ishlinskii", "scheduled_pi", "mpc", "overdrive", "brake"}
 
 
 def test_every_file_offers_a_controller() -> None:

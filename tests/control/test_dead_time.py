@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import pytest
 
@@ -13,7 +14,7 @@ SHARE = 1.0 - math.exp(-0.1 / 0.3)
 
 @pytest.mark.parametrize("true_ticks", [0, 1, 2, 5])
 def test_whole_ticks_are_found_from_a_few_steps(true_ticks: int) -> None:
-    line, pressure, sent = no_dead_time(8.0), 8.0, [8.0] * (LONGEST_TICKS + 1)
+    line, pressure, sent = no_dead_time(8.0), 8.0, [8.0] * (LONGEST_TICKS + 2)
     for tick in range(80):
         command = 8.0 + 2.0 * ((tick // 15) % 2)
         before = pressure
@@ -23,6 +24,22 @@ def test_whole_ticks_are_found_from_a_few_steps(true_ticks: int) -> None:
     assert line.ticks == true_ticks
     assert line.arriving == sent[true_ticks]
     assert line.queued == tuple(reversed(sent[:true_ticks]))
+
+
+def test_parts_of_a_tick_are_found_too() -> None:
+    """The lag in closed form, with every command coming into force half a tick after the first whole one."""
+    line, pressure, sent, keep = no_dead_time(8.0), 8.0, [8.0] * (LONGEST_TICKS + 2), 1.0 - SHARE
+    line = replace(line, keep=keep)
+    for tick in range(80):
+        command = 8.0 + 2.0 * ((tick // 15) % 2)
+        before = pressure
+        pressure = sent[2] + (pressure - sent[2]) * keep**0.5
+        pressure = sent[1] + (pressure - sent[1]) * keep**0.5
+        line = line.judged(pressure, lambda u, p=before: p + SHARE * (u - p)).and_sent(command)
+        sent = [command, *sent[:-1]]
+    assert line.ticks == 1.5
+    assert line.rest == (sent[0], 0.5)
+    assert len(line.queued) == 1
 
 
 def test_noise_alone_finds_none() -> None:

@@ -1,0 +1,69 @@
+"""The filter through the play: what it learns, how sure it says it is, and how sure it may be."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import pytest
+
+from app.physics_bench import open_virtual
+from control.controller import Seen
+from control.design import DesignModel
+from control.play_filter import Belief, PlayFilter
+
+DESIGN = DesignModel()
+TICK_S = 0.1
+STAIRS = np.repeat([10.5, 8.4, 11.2, 7.4, 10.8, 8.0], 250)
+
+
+def watch(seed: int, noise: float = 1.0, **numbers: float) -> tuple[Belief, Mapping[str, float]]:
+    """The belief after going up and down a few times, and the truth: stem and plate."""
+    opened = open_virtual(seed, numbers=numbers, noise=noise)
+    watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
+    belief = watcher.start(seen(sample))
+    for tick, command_psi in enumerate(STAIRS):
+        belief, _ = watcher.track(belief, seen(sample), TICK_S)
+        opened.clock.sleep_until((tick + 1) * TICK_S)
+        sample = opened.bench.exchange(float(command_psi))
+    state = opened.bench.physics.state  # type: ignore[attr-defined]
+    return belief, {"stem": float(state["stem"][0]), "plate": float(state["slider"][0])}
+
+
+def seen(sample: object) -> Seen:
+    return Seen(sample.position.value, sample.pressure.value, sample.commanded_psi)  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize(("a1", "a2"), [(8.78, 5.82), (9.0, 5.6), (8.55, 6.0)])
+def test_both_edges_are_learned(a1: float, a2: float) -> None:
+    belief, _ = watch(1, a1=a1, a2=a2)
+    k = belief.compliance
+    for side, edge in ((1, a1), (-1, a2)):
+        assert belief.edge_psi(0.25, side) == pytest.approx(edge + 0.25 / DESIGN.compliance, abs=0.06)
+        assert belief.edge_doubt_in(side) / k < 0.05
+
+
+@pytest.mark.parametrize("noise", [1.0, 4.0])
+def test_it_is_as_sure_as_it_may_be(noise: float) -> None:
+    """Over seeds, the play output is within three standard deviations, and these are small."""
+    for seed in range(6):
+        belief, truth = watch(seed, noise=noise)
+        assert abs(belief.inside.w - truth["plate"]) < 3.0 * belief.doubt_in
+        assert belief.doubt_in < 0.002 * DESIGN.travel * noise
+
+
+def test_the_noise_is_measured() -> None:
+    assert watch(2, noise=1.0)[0].noise_in == pytest.approx(0.0006, rel=0.35)
+    assert watch(2, noise=4.0)[0].noise_in == pytest.approx(0.0024, rel=0.35)
+
+
+def test_a_rest_on_a_stop_teaches_nothing() -> None:
+    opened = open_virtual(0)
+    watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
+    belief = first = watcher.start(seen(sample))
+    for tick in range(200):
+        belief, _ = watcher.track(belief, seen(sample), TICK_S)
+        opened.clock.sleep_until((tick + 1) * TICK_S)
+        sample = opened.bench.exchange(2.0)
+    assert (belief.inside.a1, belief.inside.a2) == (first.inside.a1, first.inside.a2)
+    assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(5, 5)) > -1e-12)
