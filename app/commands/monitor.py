@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from itertools import islice
+from typing import TYPE_CHECKING
 
 import click
 
 from app.session import bench_options
+
+if TYPE_CHECKING:
+    from hal.clock import Clock
+    from hal.modbus_bench import ModbusBench
+    from hal.sample import Sample
+    from hal.signals import StopRequest
 
 
 @click.command()
@@ -33,7 +42,7 @@ def command(
     """
     from app.readings import header, line, sample_row
     from app.watch import open_to_look
-    from hal.errors import BadInput, PortFault
+    from hal.errors import BadInput
     from hal.signals import stop_signals
 
     stepped = count is not None and not real_time
@@ -44,15 +53,22 @@ def command(
             raise BadInput(f"--period {period_s:g} s is shorter than the line can carry; the least is {least_s:.4g} s")
         if not as_json:
             click.echo(header(unit))
-        began_s, tick = clock.now_s(), 0
-        while count is None or tick < count:
-            stop.check()
-            clock.sleep_until(began_s + tick * period_s)
-            try:
-                sample = bench.observe()
-            except PortFault as gone:
-                if not bench.reopen(gone):
-                    raise
-                continue
+        began_s = clock.now_s()
+        for sample in islice(_readings(bench, clock, period_s, stop), count):
             click.echo(json.dumps(sample_row(sample, unit)) if as_json else line(sample, began_s))
-            tick += 1
+
+
+def _readings(bench: ModbusBench, clock: Clock, period_s: float, stop: StopRequest) -> Iterator[Sample]:
+    """One every period, for ever. Raises: what the bench raises; `Stopped`."""
+    from hal.errors import PortFault
+
+    due_s = clock.now_s()
+    while True:
+        stop.check()
+        clock.sleep_until(due_s)
+        try:
+            yield bench.observe()
+        except PortFault as gone:
+            if not bench.reopen(gone):
+                raise
+        due_s = max(due_s + period_s, clock.now_s())
