@@ -32,7 +32,7 @@ def unwrap(raw: FloatArray, unit_s: float) -> tuple[FloatArray, list[DataNote]]:
     """
     steps = np.diff(raw)
     falls = np.flatnonzero(steps < 0)
-    if falls.size == 0 or raw.size < 3:
+    if falls.size == 0 or raw.size < 3 or float(np.nanmedian(steps)) < 0.0:  # a clock that mostly falls is no counter
         return raw, []
     near = 5.0 * float(np.median(steps[steps > 0])) if np.any(steps > 0) else 0.0
     for modulus in (*_WRAPS[:2], _WRAPS[2] / unit_s, _WRAPS[3] / unit_s):
@@ -47,7 +47,9 @@ def unwrap(raw: FloatArray, unit_s: float) -> tuple[FloatArray, list[DataNote]]:
 
 
 def ascending(time_s: FloatArray, where: str, locate: Callable[[int], str]) -> Times:
-    """Drops rows without a time, sorts out repeated times, refuses times that go backward.
+    """Drops rows without a time, turns round a file that is newest first, sorts out repeated times.
+
+    Times that go backward now and then are refused: which of the rows are right is not known.
 
     Raises: `BadInput` naming the row and both times, or when fewer than two rows have a time.
     """
@@ -61,6 +63,10 @@ def ascending(time_s: FloatArray, where: str, locate: Callable[[int], str]) -> T
         raise BadInput(f"{where}: {keep.size} rows have a usable time; a recording needs at least 2")
     time_s = time_s[keep]
     steps = np.diff(time_s)
+    if steps.size > 1 and np.all(steps <= 0) and np.any(steps < 0):
+        notes.append(DataNote("rows stand newest first", "put in the order of time", int(keep.size), 1))
+        keep, time_s = keep[::-1], time_s[::-1]
+        steps = np.diff(time_s)
     if np.any(steps < 0):
         at = int(np.flatnonzero(steps < 0)[0])
         raise BadInput(

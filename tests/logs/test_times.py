@@ -25,6 +25,20 @@ def test_a_clock_that_was_set_back_is_not_taken_for_a_counter() -> None:
         ascending(raw, "here", row_name)
 
 
+def test_a_file_that_is_newest_first_is_turned_round() -> None:
+    when = ascending(np.array([30.0, 20.0, np.nan, 10.0, 0.0]), "here", row_name)
+    assert when.time_s.tolist() == [0.0, 10.0, 20.0, 30.0] and when.keep.tolist() == [4, 3, 1, 0]
+    assert "rows stand newest first" in [note.what for note in when.notes]
+
+
+def test_times_of_day_that_run_backward_over_midnight_are_refused_not_unwrapped() -> None:
+    falling = (86_400.0 - 60.0 * np.arange(1.0, 4000.0)) % 86_400.0
+    same, notes = unwrap(falling, 1.0)
+    assert same is falling and notes == []
+    with pytest.raises(BadInput, match="row 2: the time goes backward"):
+        ascending(falling, "here", row_name)
+
+
 def test_rows_merge_by_mean_or_by_first_and_nan_does_not_count() -> None:
     time_s = np.array([0.0, 0.0, 1.0, 2.0, 2.0])
     values = np.array([1.0, 3.0, 5.0, np.nan, 7.0])
