@@ -21,6 +21,7 @@ TAIL_SHARE = 0.3  # the last part of a dwell that is averaged
 STOP_SHARE = 0.02  # of the range of positions: closer to an end than this is at a stop
 FEWEST_POINTS = 4
 VAGUE_ONSET = 0.05  # of the range of pressures
+NONE_SETTLED = "no curves through settled dwells to compare with: the stem still moves in all; a staircase stays longer"
 SETTLED_TAUS = 2.5  # a tail that begins later than so many time constants is corrected for what is left to move
 
 
@@ -138,6 +139,8 @@ def characterize(recordings: list[Recording], settling: Settling | None = None) 
         settled &= free_s > SETTLED_TAUS * settling.tau_s
     notes = []
     curves: list[Curve | None] = []
+    if not (inside & settled & (np.abs(moved) > least)).any():
+        return BacklashCurves(None, None, (NONE_SETTLED,))
     for name, mask in (("closing", moved > least), ("opening", moved < -least)):
         chosen = mask & inside & settled
         curve = fit_curve(pressure[chosen], position[chosen]) if chosen.sum() >= FEWEST_POINTS else None

@@ -35,19 +35,29 @@ def command(
     """Open RUN in the rerun viewer: command and pressure, position, error, the hysteresis plane, states, events.
 
     RUN is a run folder, a name out of `lostmotion runs`, `latest`, a CSV or Parquet file, or the address of a live
-    view (rerun+http://...). The view is made anew from the record, which stays as it is. The viewer listens on this
-    machine only and sends nothing out.
+    view (rerun+http://...). The view is made anew from the record, which stays as it is. A view that is there already,
+    as a .rrd file of a run or of a diagnosis, is opened as it is. The viewer listens on this machine only and sends
+    nothing out.
     """
-    from logs.viewer import has_screen, open_window, take_picture
+    from logs.viewer import has_screen, open_window
 
     if run.startswith("rerun+"):
         _need_screen(has_screen(), run)
         click.echo(f"viewer opened, process {open_window(run).pid}")
         return
-    record = open_run(run, mapping, units, command_timing)
-    say_problems(record)
-    file = _write_view(record, rrd, design)
+    if Path(run).suffix == ".rrd":
+        file = _view_file(Path(run), any((rrd, design, mapping, units)))
+    else:
+        record = open_run(run, mapping, units, command_timing)
+        say_problems(record)
+        file = _write_view(record, rrd, design)
     click.echo(f"view: {file}")
+    _show(file, png, at_s, no_window)
+
+
+def _show(file: Path, png: Path | None, at_s: float | None, no_window: bool) -> None:
+    from logs.viewer import has_screen, open_window, take_picture
+
     if png is not None:
         for complaint in take_picture(file, png, at_s=at_s):
             click.echo(f"note: the viewer says: {complaint}", err=True)
@@ -61,6 +71,26 @@ def command(
             "There is no screen here. Open the view where there is one with `rerun FILE`, "
             "or make a picture here with --headless-png FILE."
         )
+
+
+def _view_file(path: Path, told_how: bool) -> Path:
+    """A view that was made before. Raises: `BadInput` when it is none, or when it should be made another way."""
+    from hal.errors import BadInput
+
+    try:
+        with path.open("rb") as file:
+            head = file.read(4)
+    except OSError as error:
+        raise BadInput(
+            f"{path} cannot be read ({error.strerror}); `lostmotion runs` lists the recorded runs"
+        ) from error
+    if head[:2] != b"RR":
+        raise BadInput(f"{path} is no rerun file; give the run itself, and its view is made")
+    if told_how:
+        raise BadInput(
+            f"{path} is a finished view: --rrd, --design, --map and --units need the record it was made from"
+        )
+    return path
 
 
 def _need_screen(there: bool, address: str) -> None:

@@ -118,3 +118,18 @@ def test_bad_input_is_one_sentence_and_exit_code_two(
     assert lostmotion(arguments) == 2
     said = capsys.readouterr().err
     assert said and "Traceback" not in said and not Path("out.csv").exists()
+
+
+def test_a_finished_view_is_opened_as_it_is(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert lostmotion(["view", "latest", "--no-window"]) == 0
+    view = folder / VIEW
+    before = view.stat().st_mtime_ns
+    capsys.readouterr()
+    assert lostmotion(["view", str(view), "--no-window"]) == 0
+    assert capsys.readouterr().out == f"view: {view}\n"
+    assert view.stat().st_mtime_ns == before
+    Path("none.rrd").write_text("time_s,command_psi\n", encoding="utf-8")
+    for words, sentence in ((["none.rrd"], "is no rerun file"), (["missing.rrd"], "cannot be read"),
+                            ([str(view), "--rrd", "x.rrd"], "is a finished view")):  # fmt: skip
+        assert lostmotion(["view", *words]) == 2
+        assert sentence in capsys.readouterr().err

@@ -73,3 +73,10 @@ def test_a_few_false_points_do_not_pull_the_line() -> None:
     assert curve.onset.value == pytest.approx(8.78, abs=1e-3)
     assert curve.used.sum() == 10
     assert fit_curve(np.full(5, 9.0), np.linspace(0.0, 1.0, 5)) is None
+
+
+def test_dwells_in_which_the_stem_still_moves_are_said_once() -> None:
+    curves = characterize([staircase(dwell_s=4.0)], Settling(2.7, 0.3, 0.12))
+    assert curves.closing is curves.opening is None
+    assert len(curves.notes) == 1
+    assert "the stem still moves in all" in curves.notes[0]
