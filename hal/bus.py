@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from hal.device import Device
 from hal.errors import WireFault
 from hal.pdu import Request, echo, read_registers
-from hal.reply import Line, Reply, check_refusal
+from hal.reply import Line, Reply, accept, with_retries
 from hal.stats import BusStats
 
 _MOST_OWED = 4  # an answer that is overdue by more probes than this will not come any more
@@ -57,14 +57,7 @@ class RtuBus:
         self._line.close()
 
     def transact(self, request: Request, retries: int = 0) -> Reply:
-        for attempt in range(retries + 1):
-            try:
-                return self._once(request)
-            except WireFault:
-                if attempt == retries:
-                    raise
-                self.stats.retries += 1
-        raise AssertionError("unreachable: the last attempt returns or raises")
+        return with_retries(lambda: self._once(request), retries, self.stats)
 
     def timeout_s(self, request: Request) -> float:
         """How long to wait for an answer [s]: both frames on the wire, the device's turnaround, and the margin."""
@@ -86,11 +79,7 @@ class RtuBus:
             trust.clean = False
         if not trust.clean:
             self._resynchronise(trust)
-        reply = self._ask(trust, request)
-        self.stats.transactions += 1
-        self.stats.exceptions += reply.refused
-        check_refusal(request, reply, self._line.name)
-        return reply
+        return accept(request, self._ask(trust, request), self.stats, self._line.name)
 
     def _ask(self, trust: Trust, request: Request) -> Reply:
         trust.clean = False  # until the answer is here, whatever happens in between

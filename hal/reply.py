@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Protocol
 
-from hal.errors import DeviceRefused
+from hal.errors import DeviceRefused, WireFault
 from hal.pdu import EXCEPTIONS, Request, words_of
 from hal.profile import Serial
 from hal.stats import BusStats
@@ -81,8 +82,20 @@ class Bus(Protocol):
         """
 
 
-def check_refusal(request: Request, reply: Reply, port: str) -> None:
-    """Raises: `DeviceRefused` when the answer is an exception."""
+def with_retries(once: Callable[[], Reply], retries: int, stats: BusStats) -> Reply:
+    """Asks up to 1 + `retries` times, until there is an answer. Raises: what the last try raises."""
+    for _ in range(retries):
+        try:
+            return once()
+        except WireFault:
+            stats.retries += 1
+    return once()
+
+
+def accept(request: Request, reply: Reply, stats: BusStats, port: str) -> Reply:
+    """Counts a trusted answer and hands it out. Raises: `DeviceRefused` when it is an exception."""
+    stats.transactions += 1
+    stats.exceptions += reply.refused
     if reply.refused:
         code = reply.pdu[1]
         raise DeviceRefused(
@@ -91,3 +104,4 @@ def check_refusal(request: Request, reply: Reply, port: str) -> None:
             function=request.function,
             code=code,
         )
+    return reply

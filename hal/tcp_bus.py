@@ -10,7 +10,7 @@ import struct
 from hal.clock import Clock, RealClock
 from hal.errors import PortFault, WireFault
 from hal.pdu import Request
-from hal.reply import Reply, check_refusal
+from hal.reply import Reply, accept, with_retries
 from hal.stats import BusStats
 from hal.transport import Transport
 
@@ -44,14 +44,7 @@ class TcpBus:
         self._transport.close()
 
     def transact(self, request: Request, retries: int = 0) -> Reply:
-        for attempt in range(retries + 1):
-            try:
-                return self._once(request)
-            except WireFault:
-                if attempt == retries:
-                    raise
-                self._stats.retries += 1
-        raise AssertionError("unreachable: the last attempt returns or raises")
+        return with_retries(lambda: self._once(request), retries, self._stats)
 
     def _once(self, request: Request) -> Reply:
         self._number = (self._number + 1) & 0xFFFF
@@ -68,11 +61,7 @@ class TcpBus:
                     continue
                 if unit != request.unit or not request.accepts(pdu):
                     continue  # the right number with the wrong contents: no answer
-                reply = Reply(pdu, sent_s, self._clock.now_s())
-                self._stats.transactions += 1
-                self._stats.exceptions += reply.refused
-                check_refusal(request, reply, self._name)
-                return reply
+                return accept(request, Reply(pdu, sent_s, self._clock.now_s()), self._stats, self._name)
         self._stats.timeouts += 1
         raise WireFault(
             f"unit {request.unit} on {self._name}: no answer within {self._timeout_s:g} s; "
