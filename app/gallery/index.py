@@ -21,10 +21,10 @@ _FIGURES = {
     "3-4": "controllers",
     "3-5": "geometry",
     "3-6": "diagrams",
-    "3-7": "controllers",
+    "3-7": "if_then",
     "3-9": "geometry",
-    "3-10": "controllers",
-    "3-12": "controllers",
+    "3-10": "if_then",
+    "3-12": "if_then",
     "beyond": "controllers",
     "rivals": "rivals",
 }
