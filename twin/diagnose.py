@@ -21,11 +21,13 @@ from twin.diagnosis import Diagnosis, Where
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, heldout_parts
+from twin.lateness import late_commands
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
+from twin.repeatable import disturbance
 from twin.rounding import rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
@@ -33,6 +35,7 @@ from twin.statement import statement
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
+from twin.unexplained import residual_signature
 from twin.verdict import Judgement, pronounce
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
@@ -94,8 +97,10 @@ def diagnose(
     case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
+    late, late_notes = late_commands(look_at(case)[0])
+    case = replace(case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
-    notes += [*timing_notes, *look_notes]
+    notes += [*timing_notes, *late_notes, *look_notes]
     stage = Stage()
     judgement: Judgement | None = None
     try:
@@ -104,7 +109,8 @@ def diagnose(
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
         ep_share = where.stage["ep"].value if where.stage else 0.0
-        judgement = pronounce(result, sensing, ep_share, settings.weights)
+        loud = disturbance(case, settings.margin.position)
+        judgement = pronounce(result, sensing, ep_share, settings.weights, loud)
         final = _final_plant(case, result, judgement, retuned, sensing)
         progress("held-out gap", 0.0)
         parts = heldout_parts(look, result, judgement, retuned, sensing, stage.told(progress))
@@ -115,8 +121,10 @@ def diagnose(
         raise Interrupted(known_so_far(case, notes, stage, settings.seed, judgement)) from stop
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
-    model, units = _model(final, case)
+    model, units = _model(Plant(final.design, tuple(i for i in final.inserted if i not in late)), case)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
+    if judgement.verdict == "unexplained":
+        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, loud))
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from twin.choose.decide import Decision
 from twin.choose.weigh import Weighed, Weights, weigh
 from twin.diagnosis import Cause, Estimate, Ranked, Verdict
 from twin.fit.fitting import Fit
 from twin.fit.numbers import unit
 from twin.fit.space import Cause as Candidate
+from twin.repeatable import Disturbance, repeated_share
 from twin.sensing import Sensing
 from twin.stages import StageResult
 
@@ -17,6 +19,8 @@ MATERIAL_SHARE = 0.25
 _EVENT_PROBABILITY = 0.97
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave.
 MISSED_FALSE = 4.0
+#: Mean squared residual, noise = 1, that has to be common to repeats before it is a gap of the model.
+COMES_BACK = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +33,13 @@ class Judgement:
     confusable: tuple[tuple[str, ...], ...]
 
 
-def pronounce(result: StageResult, sensing: Sensing, ep_share: float, weights: Weights) -> Judgement:
-    """Combines everything. `ep_share` is the converter's share of the reducible position error, 0 if unknown."""
+def pronounce(
+    result: StageResult, sensing: Sensing, ep_share: float, weights: Weights, loud: Disturbance | None = None
+) -> Judgement:
+    """Combines everything. `ep_share` is the converter's share of the reducible position error, 0 if unknown.
+
+    `loud`: what does not repeat although it should; without any cause it is what is unexplained.
+    """
     weighed = [weigh(d, weights) for d in result.decisions]
     causes = _causes(result, weighed, sensing)
     sets = tuple(s for w in weighed for s in w.sets)
@@ -39,7 +48,7 @@ def pronounce(result: StageResult, sensing: Sensing, ep_share: float, weights: W
         return Judgement("unexplained", (), ranking, ())
     effects = [c for c in causes if not c.name.startswith("parameter:")]
     if not causes:
-        return Judgement("no_gap", (), ranking, ())
+        return Judgement("no_gap" if loud is None else "unexplained", (), ranking, ())
     verdict: Verdict = "parameter" if not effects else "effect" if len(effects) == 1 else "effects"
     return Judgement(verdict, causes, ranking, sets)
 
@@ -55,11 +64,18 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
             continue
         if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
             continue
-        if decision.gap and not decision.explained:
+        if decision.gap and not decision.explained and _comes_back(decision):
             minor = decision.findings.channel.name == "pressure" and ep_share < MATERIAL_SHARE
             if not minor:
                 return True
     return False
+
+
+def _comes_back(decision: Decision) -> bool:
+    """Whether the design's error repeats where commands were repeated; taken for granted where none was."""
+    none, trials = decision.findings.none, decision.findings.channel.trials
+    share = repeated_share(none.residuals, trials)
+    return share is None or share * none.mse > COMES_BACK
 
 
 def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tuple[Cause, ...]:

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.search import Findings, size_of
+from twin.choose.claims import size_of
+from twin.choose.search import Findings
 from twin.fit.fitting import Fit
+from twin.fit.space import SHIFTED
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,8 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             break
         accepted = better
         size = size_of(better)
+    accepted = _with_numbers(findings, accepted, rules)
+    size = size_of(accepted)
     before = max(findings.none.mse - floor, 0.0)
     rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
     explained = size > 0 and rest < rules.unexplained
@@ -80,6 +84,20 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
     return min(near, key=lambda f: (len(f.names), -findings.score(f))) if near else fit
+
+
+def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+    """`fit`, or the same effects with the design numbers accused that they had to move far.
+
+    A number that rides along as a nuisance leaves no gap to be closed by accusing it; what it pays is its prior.
+    """
+    moved = {f"parameter:{n}" for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > SHIFTED}
+    own = set(fit.names)
+    larger = [f for f in findings.fits if own < set(f.names) and set(f.names) - own <= moved]
+    best = max(larger, key=findings.score, default=None)
+    if best is None or size_of(fit) == 0 or findings.score(best) - findings.score(fit) <= rules.evidence:
+        return fit
+    return best
 
 
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:

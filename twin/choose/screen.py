@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,8 +21,10 @@ from twin.fit.least_squares import jacobian
 from twin.fit.space import Cause, Space, form_starts, make_space
 from twin.plant import Plant
 
-#: Starts of a form that are looked at besides the one where it ended alone; forms with more have narrow valleys.
-_MOST_STARTS = 9
+#: Starts of a form that are looked at besides the one where it ended alone; forms with more are looked at there only.
+_MOST_STARTS = 24
+#: Sizes about the best start at which a form whose response jumps is looked at once more: its valleys are narrow.
+_ZOOM = (0.6, 0.7, 0.8, 0.9, 1.12, 1.25, 1.4)
 #: The size of a cause is taken to be at most so many times that of the start.
 _LARGEST = 5.0
 
@@ -53,17 +55,35 @@ class Screen:
         space = make_space(self.base, causes, self.space.numbers, self.space.scales)
         best = Prospect(causes, space, self.z, -1.0)
         for option in _options(space, known):
-            start = np.concatenate([self.z, option])
-            gain = self._gain(self.channel.residuals(space.plant(start)))
-            if gain > best.gain:
-                best = Prospect(causes, space, start, gain)
+            best = self._better(best, option)
+        for option in _zoomed(causes[-1], best.start[self.z.size :]):
+            best = self._better(best, option)
         return best
+
+    def _better(self, best: Prospect, option: FloatArray) -> Prospect:
+        """The better of `best` and the same hypothesis at another value of its last cause."""
+        start = np.concatenate([self.z, option])
+        gain = self._gain(self.channel.residuals(best.space.plant(start)))
+        return replace(best, start=start, gain=gain) if gain > best.gain else best
+
+    def directions(self, cause: Cause, known: Sequence[Fit]) -> list[tuple[FloatArray, FloatArray]]:
+        """(values of the cause's own unknowns, direction in which they move the residual) for each of its starts.
+
+        The direction is what is left of it once the unknowns of the smaller hypothesis have followed.
+        """
+        space = make_space(self.base, (*self.space.causes, cause), self.space.numbers, self.space.scales)
+        ends = [np.concatenate([self.z, option]) for option in _options(space, known)]
+        return [(z[self.z.size :], self._direction(self.channel.residuals(space.plant(z)))) for z in ends]
+
+    def _direction(self, moved: FloatArray) -> FloatArray:
+        direction = np.zeros(self.r.size)
+        direction[: moved.size] = moved - self.r[: moved.size]
+        rest: FloatArray = direction - self.basis @ (self.basis.T @ direction)
+        return rest
 
     def _gain(self, moved: FloatArray) -> float:
         """How much of the squares the direction toward `moved` could take away; 0 if it leads away."""
-        direction = np.zeros(self.r.size)
-        direction[: moved.size] = moved - self.r[: moved.size]
-        direction -= self.basis @ (self.basis.T @ direction)
+        direction = self._direction(moved)
         length = float(direction @ direction)
         along = -float(self.r @ direction)
         if length <= 0.0 or along <= 0.0:
@@ -104,5 +124,13 @@ def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:
     alone = make_space(space.base, (last,), (), space.scales)
     ended = [f for f in known if [(c.name, c.form) for c in f.space.causes] == [(last.name, last.form)]]
     options = starts_of(alone, ended) if ended else []
-    own = form_starts(last.form, space.scales) if last.form.starts_for is None else []
+    own = form_starts(last.form, space.scales, dense=False) if last.form.starts_for is None else []
     return options + (own if len(own) <= _MOST_STARTS or not options else [])
+
+
+def _zoomed(cause: Cause, values: FloatArray) -> list[FloatArray]:
+    """The values with a size to which the response jumps made smaller and larger; empty for smooth forms."""
+    rough = [] if cause.form is None else [not p.smooth and p.size for p in cause.form.parameters]
+    if not any(rough) or not values.size:
+        return []
+    return [np.where(rough, factor * values, values) for factor in _ZOOM]

@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.choose.candidates import effect_causes, number_causes
+from twin.choose.claims import best_forms, same_claim, size_of, some_of_each, suspected, together
+from twin.choose.pairs import promising_pairs
 from twin.choose.score import Yardstick, make_yardstick
 from twin.choose.screen import make_screen, prospects
 from twin.effect import Scales
@@ -33,7 +35,9 @@ class SearchRules:
     rounds: int = 6
     polish: int = 8
     threads: int = 2
-    screened: int = 6  # further causes (forms) per hypothesis of the beam that get a full fit
+    paired: int = 6  # pairs that get a full fit because their moves add up well, from each point that is looked from
+    screened: int = 5  # further causes per hypothesis of the beam that get a full fit,
+    forms: int = 3  # each in so many forms at the most
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
 
@@ -77,6 +81,7 @@ class Searcher:
     scales: Scales
     rules: SearchRules = field(default_factory=SearchRules)
     progress: Progress = lambda _what, _share: None
+    origins: list[Fit] = field(default_factory=list)  # hypotheses without a cause, from where pairs are looked for
     tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
 
     def run(self) -> Findings:
@@ -86,12 +91,14 @@ class Searcher:
         retuned = fit(self.channel, space, starts_of(space), rounds=20)
         found = self._singles()
         level = list(found)
+        self.origins[:] = [none, retuned]
         for size in range(2, self.rules.most + 1):
             best = min(level, key=lambda f: f.mse, default=none)
             if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
                 break
             level = self._extended(level, size)
             found += level
+        found += self._neighbours(found)
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
         return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
@@ -110,29 +117,83 @@ class Searcher:
         singles = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
         fits: list[Fit] = []
         seen: set[tuple[str, ...]] = set()
-        for parent in sorted(level, key=lambda f: f.mse)[: self.rules.beam]:
-            more = [c for c in singles if c.name not in parent.names and not _same_claim(parent, c)]
+        for parent in self._likely(level)[: self.rules.beam]:
+            more = [c for c in singles if c.name not in parent.names and not same_claim(parent, c)]
             more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
             todo = [(*parent.space.causes, c) for c in more]
             numbers = [causes for causes in todo if causes[-1].form is None]
             fits += self._fit_all(numbers, [parent, *self.tried], self.rules.rounds, f"{size} causes")
             fits += self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
+        if size == 2:
+            fits += self._paired([c for c in singles if c.form is not None])
         return self._polished(best_forms(fits, self.channel.rows))
+
+    def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
+        """What stands beside the likeliest hypotheses and was not fitted on the way up.
+
+        With the numbers accused that they had to move far; and without each one of three causes, which may have been
+        needed only as long as the third was missing.
+        """
+        todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
+        for one in self._likely(found)[: self.rules.beam] if found else []:
+            causes = one.space.causes
+            beside = [(*causes, *some) for some in suspected(one)]
+            if len(causes) > 2:
+                beside += [causes[:k] + causes[k + 1 :] for k in range(len(causes))]
+            todo |= {_exactly(some): (some, one) for some in beside}
+        known = {_exactly(f.space.causes) for f in found}
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            return list(pool.map(lambda p: self._fit_from(*p), (p for key, p in todo.items() if key not in known)))
+
+    def _fit_from(self, causes: tuple[Cause, ...], parent: Fit) -> Fit:
+        space = make_space(self.base, causes, self._numbers(causes), self.scales)
+        return fit(self.channel, space, starts_of(space, [parent]), rounds=self.rules.rounds)
+
+    def _likely(self, level: Sequence[Fit]) -> list[Fit]:
+        """The hypotheses by their scores, best first: one that bends all numbers to imitate others is not likely."""
+        best = min(level, key=lambda f: f.mse)
+        yardstick = make_yardstick(best.residuals, self.channel.use)
+        return sorted(level, key=yardstick.score, reverse=True)
 
     def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""
         screen = make_screen(self.channel, self.base, parent)
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            best = prospects(screen, todo, self.tried, pool)[: self.rules.screened]
+            best = some_of_each(prospects(screen, todo, self.tried, pool), self.rules.screened, self.rules.forms)
             return list(pool.map(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), best))
+
+    def _paired(self, causes: Sequence[Cause]) -> list[Fit]:
+        """Full fits of the pairs of effects whose moves of the residual add up best."""
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            todo = []
+            for origin in self.origins:
+                screen = make_screen(self.channel, self.base, origin)
+                todo += promising_pairs(screen, causes, self.tried, together, pool)[: self.rules.paired]
+            return list(pool.map(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), todo))
 
     def _polished(self, fits: Sequence[Fit]) -> list[Fit]:
         ranked = sorted(fits, key=lambda f: f.mse)
         top, rest = ranked[: self.rules.polish], ranked[self.rules.polish :]
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            polished = pool.map(lambda f: fit(self.channel, f.space, [f.z], rounds=12), top)
-            return sorted([*polished, *rest], key=lambda f: f.mse)
+            polished = list(pool.map(lambda f: fit(self.channel, f.space, [f.z], rounds=12), top))
+            best = min(polished, key=lambda f: f.mse)
+            # What the best found for a cause may be what the others missed: rough valleys are found by chance.
+            told = list(pool.map(lambda f: self._told(f, best), polished))
+            return sorted([*told, *rest], key=lambda f: f.mse)
+
+    def _told(self, one: Fit, best: Fit) -> Fit:
+        """`one` fitted again from what `best` found for the causes that they share, where the response jumps."""
+        rough = {
+            c.name for c in one.space.causes if c.form is not None and not all(p.smooth for p in c.form.parameters)
+        }
+        if one is best or not rough & set(best.names):
+            return one
+        start = starts_of(one.space, [best, one])[0]
+        count = len(one.space.numbers)
+        start[:count] = one.z[:count]
+        again = fit(self.channel, one.space, [start], rounds=8)
+        return min(one, again, key=lambda f: f.mse)
 
     def _fit_all(
         self, hypotheses: Iterable[tuple[Cause, ...]], known: Sequence[Fit], rounds: int, what: str
@@ -157,33 +218,6 @@ class Searcher:
         return tuple(c.name.removeprefix("parameter:") for c in causes)
 
 
-def size_of(fit: Fit) -> int:
-    """How much a hypothesis claims: its effects and accused numbers; wrong numbers alone are one claim together."""
-    effects = sum(1 for c in fit.space.causes if c.effect is not None)
-    return len(fit.space.causes) if effects else min(len(fit.space.causes), 1)
-
-
-def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
-    """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause."""
-    plain = Yardstick(rows)
-    best: dict[tuple[str, ...], Fit] = {}
-    for one in fits:
-        key = tuple(sorted(one.names))
-        if key not in best or plain.score(one) > plain.score(best[key]):
-            best[key] = one
-    return list(best.values())
-
-
-def _same_claim(parent: Fit, cause: Cause) -> bool:
-    """Whether a cause has no meaning beside one of the parent: the same signature, or a number that it absorbs."""
-    pairs = [(a, b) for one in parent.space.causes for a, b in ((one, cause), (cause, one))]
-    return any(_takes(a, b) for a, b in pairs)
-
-
-def _takes(a: Cause, b: Cause) -> bool:
-    """Whether `b` beside `a` would only mend the form of `a`."""
-    if a.effect is None:
-        return False
-    if b.effect is None:
-        return b.name.removeprefix("parameter:") in a.effect.absorbs
-    return any(b.name in names for names in a.effect.same_as.values())
+def _exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
+    """A hypothesis by its causes and their forms."""
+    return frozenset((c.name, c.form.name if c.form else "") for c in causes)

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from twin.choose.claims import size_of
 from twin.choose.decide import Decision
-from twin.choose.search import size_of
 from twin.fit.fitting import Fit
 
 

@@ -23,6 +23,8 @@ NUISANCE_SPREAD = 0.01
 ACCUSED_SPREAD = 0.5
 #: ... and of one that an effect of the hypothesis gives another meaning.
 ABSORBED_SPREAD = 0.1
+#: Relative move of a design number beside an effect, far beyond its prior, from which it is suspected itself.
+SHIFTED = 0.06
 REFERENCE = Scales()
 
 
@@ -128,11 +130,13 @@ def _form_unknowns(cause: str, form: Form, scales: Scales) -> list[Unknown]:
     return unknowns
 
 
-def form_starts(form: Form, scales: Scales = REFERENCE, record: Recording | None = None) -> list[FloatArray]:
+def form_starts(
+    form: Form, scales: Scales = REFERENCE, record: Recording | None = None, dense: bool = True
+) -> list[FloatArray]:
     """Start vectors of a form's own unknowns in z: every combination of its parameters' starts.
 
-    A parameter to which the response jumps is started densely: its valleys are narrow. A form that reads its starts
-    from the `record` is asked first.
+    A parameter to which the response jumps is started densely, if `dense`: its valleys are narrow. A form that reads
+    its starts from the `record` is asked first.
     """
     if form.starts_for is not None and record is not None:
         own = form.starts_for(record.time_s, record.position, scales)
@@ -140,7 +144,7 @@ def form_starts(form: Form, scales: Scales = REFERENCE, record: Recording | None
             return [_in_z(form, values, scales) for values in own]
     starts: list[list[float]] = [[]]
     for p in form.parameters:
-        values = [(s - p.neutral) / p.scale for s in (p.starts if p.smooth else _dense(p))]
+        values = [(s - p.neutral) / p.scale for s in (_dense(p) if dense and not p.smooth else p.starts)]
         starts = [[*head, v] for head in starts for v in values]
     return [np.array(s) for s in starts]
 

@@ -55,13 +55,16 @@ def make_trial(
     position = _at_start(recording.position, use_y)
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
-        pressure = recording.pressure[np.flatnonzero(np.isfinite(recording.pressure))[0]]
+        pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
     return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early)
 
 
-def _at_start(position: FloatArray, use: npt.NDArray[np.bool_]) -> float:
-    """The first position: the mean over the readings before it leaves the band of its own noise."""
-    values = position[use][:200]
+def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:
+    """The first value: the mean over the readings before the signal leaves the band of its own noise.
+
+    One noisy reading of the pressure would move the play off for as long as the stem then takes to settle.
+    """
+    values = signal[use][:200]
     if values.size < 4:
         return float(values[0]) if values.size else 0.0
     noise = 1.4826 * float(np.median(np.abs(np.diff(values)))) / np.sqrt(2.0)

@@ -76,7 +76,7 @@ def _aligned(first: Recording, second: Recording) -> RepeatPair | None:
     start = float(second.time_s[0] - first.time_s[0])
     period = max(first.period_s, second.period_s)
     lags = _best_lags(_grid(first, period), _grid(second, period))
-    for shift in [start, *(start + lag * period for lag in lags)]:
+    for shift in [start, *(start + lag * period for lag in _and_beside(lags))]:
         pair = _checked(first, second, shift)
         if pair is not None:
             return pair
@@ -86,7 +86,8 @@ def _aligned(first: Recording, second: Recording) -> RepeatPair | None:
 def _periodic(recording: Recording) -> RepeatPair | None:
     """The recording laid over itself one period later, for the shortest period with which the command repeats."""
     grid = _grid(recording, recording.period_s)
-    for lag in sorted(lag for lag in _best_lags(grid, grid, count=12) if lag * recording.period_s >= _LEAST_S):
+    lags = sorted(lag for lag in _best_lags(grid, grid, count=12) if lag * recording.period_s >= _LEAST_S)
+    for lag in _and_beside(lags):
         pair = _checked(recording, recording, lag * recording.period_s)
         if pair is not None:
             return pair
@@ -126,6 +127,11 @@ def _best_lags(first: FloatArray, second: FloatArray, count: int = 3) -> list[in
     peaks = np.flatnonzero((correlation >= np.roll(correlation, 1)) & (correlation > np.roll(correlation, -1)))
     best = peaks[np.argsort(correlation[peaks])[::-1][:count]]
     return [int(lag) if lag <= size // 2 else int(lag) - size for lag in best]
+
+
+def _and_beside(lags: Sequence[int]) -> list[int]:
+    """Each lag, then its neighbours: uneven sampling puts the peak of a correlation a row off."""
+    return [lag + step for lag in lags for step in (0, -1, 1)]
 
 
 def _settled(difference: FloatArray) -> FloatArray:

@@ -1,0 +1,75 @@
+"""Two causes of which neither shows alone come first by their moves added up; the search names both."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+from hypothesis import given
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin.catalog import effect
+from twin.choose.claims import together
+from twin.choose.decide import DecisionRules, decide
+from twin.choose.pairs import _gains, promising_pairs
+from twin.choose.screen import make_screen
+from twin.choose.search import Searcher, SearchRules
+from twin.effect import Scales
+from twin.fit.channel import Channel, position_channel
+from twin.fit.fitting import fit
+from twin.fit.space import Cause, make_space
+from twin.plant import Inserted, Plant
+
+
+def cause(name: str, form: str) -> Cause:
+    return Cause(name, effect(name), effect(name).form(form))
+
+
+def channel_of(plant: Plant) -> Channel:
+    trial, _ = trial_of(plant, staircase())
+    return position_channel([trial], SIGMA)
+
+
+def test_the_pair_that_is_there_is_among_the_first_and_alone_fits() -> None:
+    bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
+    drift = Inserted("friction_drift", effect("friction_drift").form("linear"), (4e-4,))
+    channel = channel_of(Plant(DESIGN, (bow, drift)))
+    base = Plant(DesignModel())
+    screen = make_screen(channel, base, fit(channel, make_space(base, (), (), Scales()), [np.zeros(0)]))
+    causes = [
+        cause("lvdt_nonlinearity", "bow"),
+        cause("friction_drift", "linear"),
+        cause("linkage_lost_motion", "play"),
+        cause("asymmetric_damping", "two_lags"),
+        cause("creep", "one_tail"),
+    ]
+    with ThreadPoolExecutor(1) as pool:
+        found = promising_pairs(screen, causes, [], together, pool)
+    assert len(found) == 10
+    fits = [fit(channel, pair.space, [pair.start]) for pair in found[:3]]
+    assert [set(f.names) for f in fits if f.mse < 1.2] == [{"lvdt_nonlinearity", "friction_drift"}]
+
+
+@given(st.integers(0, 10_000))
+def test_the_promise_of_a_pair_is_what_it_takes_away(seed: int) -> None:
+    rng = np.random.default_rng(seed)
+    directions = rng.normal(size=(4, 30))
+    r = rng.normal(size=30)
+    gains, sizes = _gains(directions @ directions.T, -directions @ r)
+    for i in range(4):
+        for j in range(i):
+            moved = r + sizes[i, j] * directions[i] + sizes[j, i] * directions[j]
+            np.testing.assert_allclose(gains[i, j], r @ r - moved @ moved, atol=1e-9)
+            assert gains[i, j] >= -1e-9
+
+
+def test_a_wrong_number_beside_an_effect_is_named() -> None:
+    # The effect alone explains everything with the number as its nuisance: only what that costs gives it away.
+    creep = Inserted("creep", effect("creep").form("one_tail"), (0.12, 30.0))
+    wrong = DesignModel(rate_limit=0.07)
+    trial, _ = trial_of(Plant(wrong, (creep,)), staircase())
+    channel = position_channel([trial], SIGMA)
+    findings = Searcher(channel, Plant(DESIGN), Scales(), SearchRules(threads=2)).run()
+    assert set(decide(findings, DecisionRules()).names) == {"creep", "parameter:rate_limit"}

@@ -1,0 +1,86 @@
+"""What comes back in a repeat is a model's error; what does not is noise, or a disturbance when it is loud."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from tests.twin.trials import DESIGN, staircase, trial_of
+from twin.case import make_case
+from twin.diagnose import diagnose
+from twin.fit.trial import Trial
+from twin.lateness import late_commands
+from twin.plant import Plant
+from twin.repeatable import disturbance, repeated_share
+
+
+def twice() -> FloatArray:
+    return np.tile(staircase()[:2000], 2)
+
+
+def rest_of(trial: Trial, kind: str) -> FloatArray:
+    rng = np.random.default_rng(5)
+    half = np.sin(np.arange(trial.recording.n // 2) / 40.0)
+    return np.tile(half, 2) if kind == "model" else rng.normal(0.0, 1.0, trial.recording.n)
+
+
+@pytest.mark.parametrize(("kind", "low", "high"), [("model", 0.99, 1.01), ("noise", -0.1, 0.1)])
+def test_share_that_repeats(kind: str, low: float, high: float) -> None:
+    trial, _ = trial_of(Plant(DESIGN), twice())
+    share = repeated_share(rest_of(trial, kind), [trial])
+    assert share is not None
+    assert low < share < high
+
+
+def test_without_repeats_nothing_is_said() -> None:
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    assert repeated_share(rest_of(trial, "noise"), [trial]) is None
+
+
+def recorded(wander: float, late_s: float = 0.0) -> Recording:
+    """A healthy valve run twice with measured pressure; `wander`: a swing of the reading that does not repeat."""
+    trial, true = trial_of(Plant(DESIGN), twice())
+    r = trial.recording
+    rng = np.random.default_rng(3)
+    swing = wander * np.sin(2.0 * np.pi * r.time_s / 17.3)
+    pressure = np.asarray(r.pressure)
+    if late_s:
+        pressure = np.interp(r.time_s - late_s, r.time_s, pressure)
+    noisy = pressure + rng.normal(0.0, 8e-3, r.n)
+    return replace(r, position=true + swing + rng.normal(0.0, 6e-4, r.n), pressure=noisy)
+
+
+def test_a_loud_swing_that_does_not_repeat_is_unexplained_and_described() -> None:
+    swinging = recorded(0.02)
+    loud = disturbance(make_case([swinging], DESIGN))
+    assert loud is not None
+    assert loud.signal == "position"
+    found = diagnose([swinging], DesignModel()).diagnosis
+    assert found.verdict == "unexplained"
+    signature = found.residual_signature
+    assert signature["strongest_frequency_hz"] == pytest.approx(1.0 / 17.3, rel=0.15)
+    assert "does_not_repeat" in signature
+
+
+def test_a_healthy_valve_has_no_disturbance() -> None:
+    healthy = recorded(0.0)
+    assert disturbance(make_case([healthy], DESIGN)) is None
+    assert diagnose([healthy], DesignModel()).diagnosis.verdict == "no_gap"
+
+
+def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> None:
+    late, notes = late_commands(make_case([recorded(0.0, 0.008)], DESIGN))
+    assert late[0].values[0] == pytest.approx(0.008, abs=0.002)
+    assert "ms after their rows' time" in notes[0].what
+    assert late_commands(make_case([recorded(0.0)], DESIGN)) == ((), [])
+    assert late_commands(make_case([recorded(0.0, 0.25)], DESIGN)) == ((), [])
+
+
+def test_timing_is_neither_a_cause_nor_in_the_model() -> None:
+    outcome = diagnose([recorded(0.0, 0.008)], DesignModel())
+    assert outcome.diagnosis.verdict == "no_gap"
+    assert not outcome.model.effects

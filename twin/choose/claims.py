@@ -1,0 +1,66 @@
+"""What hypotheses claim: how much, which of them say the same, what they had to bend to say it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.choose.score import Yardstick
+from twin.choose.screen import Prospect
+from twin.fit.fitting import Fit
+from twin.fit.space import SHIFTED, Cause
+
+
+def some_of_each(ranked: Sequence[Prospect], causes: int, forms: int) -> list[Prospect]:
+    """The first of `ranked`: so many causes, each in its `forms` best forms."""
+    kept: dict[str, list[Prospect]] = {}
+    for prospect in ranked:
+        name = prospect.causes[-1].name
+        if name in kept or len(kept) < causes:
+            kept.setdefault(name, []).append(prospect)
+    return [prospect for some in kept.values() for prospect in some[:forms]]
+
+
+def size_of(fit: Fit) -> int:
+    """How much a hypothesis claims: its effects and accused numbers; wrong numbers alone are one claim together."""
+    effects = sum(1 for c in fit.space.causes if c.effect is not None)
+    return len(fit.space.causes) if effects else min(len(fit.space.causes), 1)
+
+
+def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
+    """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause."""
+    plain = Yardstick(rows)
+    best: dict[tuple[str, ...], Fit] = {}
+    for one in fits:
+        key = tuple(sorted(one.names))
+        if key not in best or plain.score(one) > plain.score(best[key]):
+            best[key] = one
+    return list(best.values())
+
+
+def suspected(fit: Fit) -> list[tuple[Cause, ...]]:
+    """The design numbers that an effect hypothesis had to move far: each one, and all of them."""
+    if all(c.effect is None for c in fit.space.causes):
+        return []
+    moved = [n for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > SHIFTED]
+    far = [Cause(f"parameter:{n}") for n in moved if f"parameter:{n}" not in fit.names]
+    far = [c for c in far if not same_claim(fit, c)]
+    return [*((c,) for c in far), *([tuple(far)] if len(far) > 1 else [])]
+
+
+def same_claim(parent: Fit, cause: Cause) -> bool:
+    """Whether a cause has no meaning beside one of the parent."""
+    return not all(together(one, cause) for one in parent.space.causes)
+
+
+def together(one: Cause, other: Cause) -> bool:
+    """Whether two causes both mean something: not where one has the other's signature, or absorbs its number."""
+    return not (_takes(one, other) or _takes(other, one))
+
+
+def _takes(a: Cause, b: Cause) -> bool:
+    """Whether `b` beside `a` would only mend the form of `a`."""
+    if a.effect is None:
+        return False
+    if b.effect is None:
+        return b.name.removeprefix("parameter:") in a.effect.absorbs
+    return any(b.name in names for names in a.effect.same_as.values())
