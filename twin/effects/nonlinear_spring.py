@@ -63,7 +63,7 @@ EFFECT = Effect(
     claim="Compliance depends on position.",
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
     "stem_bow: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2))",
-    source="actuator data sheets (effective area over stroke, spring range)",
+    source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
         Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing),
