@@ -119,8 +119,10 @@ def pressurise(session: Session) -> list[Finding]:
         error = statistics.fmean(pressures) - command if info.command_unit == "psi" else 0.0
         drift = abs(slope) * (times[-1] - times[0])
         allowed = _LEAK_SHARE * (info.command_max - info.command_min) if info.command_unit == "psi" else 0.4
-        text = f"held {command:g} {info.command_unit}: off by {error:+.3f} psi, drifts {slope:+.4f} psi/s"
-        found.append(Finding("leak", abs(error) + drift <= allowed, text, {"error_psi": error, "drift_psi_s": slope}))
+        held = f"held {command:g} {info.command_unit} for {times[-1] - times[0]:.0f} s"
+        leak = Finding("leak", drift <= allowed, f"{held}: drifts {slope:+.4f} psi/s", {"drift_psi_s": slope})
+        text = f"{held}: the pressure is off by {error:+.3f} psi (allowed {allowed:g})"
+        found += [leak, Finding("converter", abs(error) <= allowed, text, {"error_psi": error})]
     if start is not None and supplies:
         sag = start.value - min(supplies)
         text = f"{start.value:.2f} psi before, lowest {min(supplies):.2f} psi under load"

@@ -70,8 +70,16 @@ def test_check_refuses_a_tick_that_the_line_cannot_carry(device, capsys) -> None
 def test_check_presses_air_on_request() -> None:
     found = json.loads(lost("check", "--leak", "--json").output)
     assert found["leak"]["ok"]
-    assert abs(found["leak"]["error_psi"]) < 0.1
+    assert abs(found["converter"]["error_psi"]) < 0.1
     assert found["supply"]["lowest_psi"] == pytest.approx(found["supply"]["before_psi"], rel=0.01)
+
+
+def test_check_tells_a_wrong_converter_from_a_leak_and_a_weak_supply(capsys) -> None:
+    code, sentence = fails(capsys, "check", "--leak", "--effect", "ep_calibration=1", "--json")
+    assert (code, sentence) == (1, "lostmotion: the bench is not ready: converter")
+    code, sentence = fails(capsys, "check", "--leak", "--effect", "supply_cycling=1", "--json")
+    assert code == 1
+    assert "supply" in sentence
 
 
 def test_an_expired_calibration_is_no_ready_bench(tmp_path, capsys) -> None:
@@ -134,6 +142,20 @@ def test_an_emergency_stop_needs_an_acknowledgement(device, capsys) -> None:
     assert "lostmotion set --acknowledge" in fails(capsys, "set", "5", "--hold", "0.1", "--port", device.port)[1]
     assert lost("set", "--acknowledge", "--port", device.port).exit_code == 0
     assert lost("set", "5", "--hold", "0.1", "--port", device.port).exit_code == 0
+
+
+def test_an_emergency_stop_reaches_a_run_that_has_the_port_open(device) -> None:
+    words = [sys.executable, "-m", "app", "set", "9", "--port", device.port, "--period", "0.1"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        while "good" not in process.stdout.readline():
+            assert process.poll() is None
+        assert "confirmed 0 psi" in lost("vent", "--emergency", "--port", device.port).output
+        assert process.stderr is not None
+        assert "emergency stop (operator: lostmotion vent --emergency" in process.stderr.read()
+        assert process.wait(20) == 1
+    assert device.rig.command == 0.0
+    assert device.rig.watchdog.trips == 1, "the device itself has been stopped too"
 
 
 def test_vent_without_emergency_just_vents(device) -> None:
