@@ -10,7 +10,9 @@ import numpy as np
 from control.design import DesignModel
 from control.scenarios import TRAVEL_IN, Scenario, Segment
 
-FIRST_SEED = 3000  # tuned on seeds below 10, sizes and targets as named; 1000 to 1005 have shown a fault, mended since
+FIRST_SEED = (
+    5000  # tuned on seeds below 10 as named; draws 1000 to 1005 and 3000 to 3007 have shown faults, mended since
+)
 
 
 def held_out(scenario: Scenario, seed: int) -> Scenario:

@@ -68,6 +68,18 @@ def tune(design: DesignModel, tick_s: float, dead_time_s: float = 0.0) -> list[T
             None,
             "the drive lasts at least as long as the converter needs to brake; small misses are not worth one",
         ),
+        Tuned(
+            "brake",
+            {
+                "tolerance_in": _round(0.00125 * design.travel),
+                "band_in": _round(0.005 * design.travel),
+                "again_in": _round(0.009 * design.travel),
+                "short_in": _round(0.0009 * design.travel),
+                "retreat_psi": _round(min(0.4, 0.5 * design.deadband)),
+            },
+            None,
+            "shares of travel; the pressure retreats to the middle of the gap at most; the edges are learned",
+        ),
     ]
 
 

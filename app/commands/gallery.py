@@ -12,7 +12,7 @@ import click
               help="Folder of the page.")  # fmt: skip
 @click.option("--check", is_flag=True, help="Write nothing; fail if the stored numbers are stale.")
 def command(out: Path, check: bool) -> None:
-    """Rebuild docs/thesis.md with its pictures, or check that it is not stale. Takes two minutes."""
+    """Rebuild docs/thesis.md with its pictures, or check that it is not stale. Takes five minutes."""
     from app.gallery import page
 
     made = []

@@ -26,6 +26,7 @@ _FIGURES = {
     "3-10": "if_then",
     "3-12": "if_then",
     "beyond": "controllers",
+    "brake": "rivals",
     "rivals": "rivals",
 }
 KEYS = tuple(_FIGURES)

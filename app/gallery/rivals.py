@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -44,18 +44,73 @@ def _dots(canvas: Canvas, results: Sequence[Result], key: str) -> None:
     axes.invert_yaxis()
 
 
-def compare_all(processes: int = 2) -> list[Result]:
-    """Every controller, every scenario, two held-out seeds."""
-    return list(
-        run_all(
-            jobs(controller_names(), SCENARIOS, range(FIRST_SEED, FIRST_SEED + 2), 0.1, DesignModel(), True), processes
-        )
+def _seeds(canvas: Canvas, results: Sequence[Result]) -> None:
+    """One dot per trial, one line per scenario."""
+    axes = canvas.subplots()
+    for place, name in enumerate(SCENARIOS):
+        values = [r.score.steady for r in results if r.job.scenario == name]
+        axes.plot(values, np.full(len(values), place), "o", color=BLUE, ms=4, alpha=0.6)
+    axes.axvline(0.3, color=GREY, lw=0.8, ls="--")
+    axes.set(xlabel="worst steady error of a trial [% of travel] (line: the goal)", xlim=(0.0, None))
+    axes.set_yticks(range(len(SCENARIOS)), list(SCENARIOS))
+    axes.invert_yaxis()
+
+
+def compare(names: Iterable[str], seeds: int, processes: int = 2) -> list[Result]:
+    """These controllers over every scenario, on held-out seeds."""
+    chosen = range(FIRST_SEED, FIRST_SEED + seeds)
+    return list(run_all(jobs(names, SCENARIOS, chosen, 0.1, DesignModel(), held_out=True), processes))
+
+
+def figure_brake() -> Entry:
+    """The best controller against the goal, scenario by scenario."""
+    results, seeds = compare(["brake"], 4), 4
+    numbers = []
+    for name in SCENARIOS:
+        mine = [r.score for r in results if r.job.scenario == name]
+        numbers += [
+            Number(f"{name}: worst steady error", None, max(s.steady for s in mine), "%", 2),
+            Number(f"{name}: trials with a limit cycle", None, float(sum(s.cycle > 0.0 for s in mine)), "", 0),
+            Number(f"{name}: settling over floor", None, float(np.nanmedian([s.ratio for s in mine])), "", 2),
+            Number(f"{name}: steps within 1.2 floors", None, 100.0 * float(np.mean([s.close for s in mine])), "%", 0),
+        ]
+    total = [r.score for r in results]
+    numbers += [
+        Number("trials with every steady error <= 0.3 %", None, _percent(s.steady <= 0.3 for s in total), "%", 0),
+        Number("trials without a limit cycle", None, _percent(s.cycle == 0.0 for s in total), "%", 0),
+        Number("steps that settle within 1.2 floors", None, 100.0 * float(np.mean([s.close for s in total])), "%", 0),
+    ]
+    return Entry(
+        "brake",
+        "`brake` against the goal, scenario by scenario",
+        "",
+        f"{seeds} seeds, held out: the sizes of what is wrong, the targets and the noise are drawn anew, and nothing "
+        "was tuned on them. The first hold, in which everything is learned, counts. The goal is a steady error of at "
+        "most 0.3 % of travel, no limit cycle, and settling within 1.2 times the physical minimum.",
+        tuple(numbers),
+        lambda canvas: _seeds(canvas, results),
+        (7.2, 3.6),
+        command=f"lostmotion compare -c brake --held-out --seeds {seeds}",
+        notes=(
+            "Stiction is what defeats it: where the plate sticks, no move of less than 10 % of travel (0.3 psi x 0.19 "
+            "in/psi) begins without a jump, so that a small correction has to be a stroke of that size and back; and "
+            "that the valve sticks shows only after some pushes in vain. Where edges or calibration are wrong, the "
+            "first moves are for learning. Two things were tried and are not used "
+            "(`python bench/dither_and_learning.py`): a dither of 1 psi under stiction takes the mean error down to "
+            "0.05 %, but shakes the stem by +-0.45 % for eleven times the air; iterative learning of one pressure per "
+            "hold comes down to 0.2 % after four passes of the same targets, which is what the filter reaches in one, "
+            "and not at all under stiction.",
+        ),
     )
+
+
+def _percent(hits: Iterable[bool]) -> float:
+    return 100.0 * float(np.mean(list(hits)))
 
 
 def figure_rivals(processes: int = 2) -> Entry:
     """The comparison."""
-    results = compare_all(processes)
+    results = compare(controller_names(), 1, processes)
     rows = summary(results)
     numbers = []
     for name in sorted(rows, key=lambda n: rows[n]["steady_worst"]):
@@ -73,17 +128,19 @@ def figure_rivals(processes: int = 2) -> Entry:
         "rivals",
         "All controllers over all scenarios",
         "",
-        f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), one seed each; errors of the true stem in the last "
-        "quarter of every hold, in percent of travel. Settling is to 0.5 %; the floor is the time in which no "
-        "controller can be faster: full supply, or none, from the moment of the step, plus one tick. A limit "
-        "cycle is a swing of more than 0.6 % (+-0.3 %) that turns at least three times after the first quarter of a "
-        "hold and is still there in the last third; one such hold in a trial counts. `p` and `open_loop` never settle. "
-        "The valve starts vented and the learning controllers start with the design's numbers, so that the first hold "
-        "is part of the score. The settings of `overdrive`, `inverse_pi` and `mpc` were tuned by hand on these very "
-        "scenarios (seeds 1 and 2; this table is seed 0); the others have plain defaults. The goal of 0.3 % at worst "
-        "and no limit cycle is met in most scenarios and not in all.",
+        f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), one held-out seed each; errors of the true stem in the "
+        "last quarter of every hold, in percent of travel. Settling is to 0.5 % and for good. The floor is the "
+        "physical minimum of each step, computed from the plant's own numbers: full supply, then none, switched at the "
+        "last instant at which the far side of the band is not passed; converter lag, dead time, ceiling of the "
+        "supply, "
+        "crossing of the deadband, rate limit and lag of the stem are in it, twice where braking needs them; one tick "
+        "is added, because a command goes out a tick after the reading, and it is rounded up to a tick. A limit cycle "
+        "is a swing of the true stem of more than 0.3 % (three standard deviations of one reading, 0.0006 in) that "
+        "turns at least three times after the first quarter of a hold and is still there in the last third; one such "
+        "hold in a trial counts, and repeated corrections count like any other oscillation. `p` and `open_loop` never "
+        "settle. The valve starts vented and the learning controllers start with the design's numbers.",
         tuple(numbers),
         lambda canvas: _dots(canvas, results, "steady"),
         (7.2, 4.2),
-        "lostmotion compare",
+        "lostmotion compare --held-out --seeds 1",
     )

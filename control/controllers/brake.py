@@ -56,7 +56,7 @@ class Brake(Law[BrakeState]):
     patience_s: float = 3.0
     retreat_psi: float = 0.4
     grip_psi: float = 0.03
-    surely: float = 2.0
+    surely: float = 2.5
     stroke_psi: float = 0.45
 
     def start(self, seen: Seen, target_in: float) -> BrakeState:

@@ -22,7 +22,7 @@ from hal.errors import BadInput
 DESIGN = DesignModel()
 
 
-@pytest.mark.parametrize("name", ["overdrive", "if_then_line"])
+@pytest.mark.parametrize("name", ["overdrive", "if_then_line", "brake"])
 def test_a_trial_without_a_wire_is_the_trial_over_modbus(name: str) -> None:
     """Same plant, same seed. Over Modbus the readings are rounded to the profile's registers, and that is all.
 
@@ -42,6 +42,15 @@ def test_compare_prints_json() -> None:
     said = json.loads(done.stdout)
     assert len(said["trials"]) == 2
     assert said["summary"]["overdrive"]["steady_worst"] < said["summary"]["p"]["steady_worst"]
+
+
+def test_compare_says_which_seeds() -> None:
+    common = ["-c", "if_then_line", "-s", "reversals", "--seeds", "1", "--processes", "1"]
+    named, drawn = (
+        CliRunner().invoke(compare, [*common, *more], catch_exceptions=False) for more in ([], ["--held-out"])
+    )
+    assert "seeds 0 to 0, sizes and targets as the scenarios name them" in named.stdout
+    assert "seeds 5000 to 5000, sizes and targets drawn, held out" in drawn.stdout
 
 
 def test_compare_prints_a_table_and_a_picture(tmp_path: Path) -> None:

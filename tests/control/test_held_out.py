@@ -11,8 +11,8 @@ from control.scenarios import SCENARIOS, TRAVEL_IN
 
 @pytest.mark.parametrize("name", SCENARIOS)
 def test_sizes_shrink_and_targets_move(name: str) -> None:
-    named, drawn = SCENARIOS[name], held_out(SCENARIOS[name], 1000)
-    assert held_out(named, 1000) == drawn != held_out(named, 1001)
+    named, drawn = SCENARIOS[name], held_out(SCENARIOS[name], 5000)
+    assert held_out(named, 5000) == drawn != held_out(named, 5001)
     for effect, size in drawn.effects.items():
         assert 0.5 <= size / named.effects[effect] <= 1.0
     targets, before = drawn.targets(0.1), named.targets(0.1)

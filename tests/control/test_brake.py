@@ -1,0 +1,59 @@
+"""The controller `brake`: lands, rests in the gap, notices that a valve sticks, and learns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+import numpy.typing as npt
+import pytest
+
+from app.physics_bench import open_virtual
+from control.controllers.brake import Brake, BrakeState
+from control.design import DesignModel
+
+DESIGN = DesignModel()
+TICK_S = 0.1
+
+
+def hold(
+    targets: list[float], effects: Mapping[str, float] | None = None, numbers: Mapping[str, float] | None = None
+) -> tuple[BrakeState, npt.NDArray[np.float64]]:
+    """The last state, and the true stem of every tick, shape (targets, ticks of 40 s) [% of travel off its target]."""
+    opened, law = open_virtual(4, effects=effects, numbers=numbers), Brake(DESIGN)
+    assert opened.truth_in is not None
+    sample = opened.bench.exchange(0.0)
+    state, stems = law.initial(sample, targets[0]), np.empty(400 * len(targets))
+    for tick in range(stems.size):
+        stems[tick] = opened.truth_in()
+        state, command_psi = law.step(state, sample, targets[tick // 400], TICK_S)
+        opened.clock.sleep_until((tick + 1) * TICK_S)
+        sample = opened.bench.exchange(command_psi)
+    off = 100.0 * (stems.reshape(-1, 400) - np.array(targets)[:, None]) / DESIGN.travel
+    return state, off
+
+
+def test_it_lands_and_then_nothing_moves() -> None:
+    _, off = hold([0.2, 0.4, 0.1])
+    late = off[:, 300:]
+    assert np.abs(late.mean(axis=1)).max() < 0.3
+    assert np.ptp(late, axis=1).max() < 0.05
+
+
+def test_it_rests_off_both_edges() -> None:
+    state, _ = hold([0.2, 0.3])
+    rest_psi, p = state.belief.inside.w / DESIGN.compliance, state.belief.inside.p
+    assert DESIGN.a2 + rest_psi + 0.2 < p < DESIGN.a1 + rest_psi - 0.2
+
+
+@pytest.mark.parametrize(("a1", "a2"), [(9.076, 5.524), (8.484, 6.116)])
+def test_a_wrong_deadband_is_learned(a1: float, a2: float) -> None:
+    _, off = hold([0.2, 0.4, 0.1, 0.3], numbers={"a1": a1, "a2": a2})
+    settled = [int(np.flatnonzero(np.abs(row) > 0.5)[-1]) for row in off]
+    assert settled[-1] < 25  # 2.5 s for 36 % of travel, where the rate limit alone takes 1.7 s
+
+
+def test_it_notices_sticking_and_only_where_there_is_some() -> None:
+    targets = [0.17, 0.39, 0.28, 0.31, 0.3, 0.5]
+    assert hold(targets, effects={"stiction": 0.3})[0].sticks
+    assert not hold(targets)[0].sticks
