@@ -56,6 +56,14 @@ def tune(design: DesignModel, tick_s: float, dead_time_s: float = 0.0) -> list[T
             Tuned(name, {"g": _round(1.0 / k), "update_s": _round(wait_s)}, None, _rule_why(left))
             for name in ("if_then_constant", "if_then_line")
         ),
+        *_rivals(design, dead_time_s),
+    ]
+
+
+def _rivals(design: DesignModel, dead_time_s: float) -> list[Tuned]:
+    """Those that no frequency analysis covers."""
+    k = design.compliance
+    return [
         Tuned(
             "scheduled_pi",
             {"kp": _round(0.5 / k), "ki": _round(0.23 / k)},

@@ -130,14 +130,15 @@ def figure_rivals(processes: int = 2) -> Entry:
         "",
         f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), one held-out seed each; errors of the true stem in the "
         "last quarter of every hold, in percent of travel. Settling is to 0.5 % and for good. The floor is the "
-        "physical minimum of each step, computed from the plant's own numbers: full supply, then none, switched at the "
-        "last instant at which the far side of the band is not passed; converter lag, dead time, ceiling of the "
-        "supply, crossing of the deadband, rate limit and lag of the stem are in it, twice where braking needs them; one tick "
-        "is added, because a command goes out a tick after the reading, and it is rounded up to a tick. A limit cycle "
-        "is a swing of the true stem of more than 0.3 % (three standard deviations of one reading, 0.0006 in) that "
-        "turns at least three times after the first quarter of a hold and is still there in the last third; one such "
-        "hold in a trial counts, and repeated corrections count like any other oscillation. `p` and `open_loop` never "
-        "settle. The valve starts vented and the learning controllers start with the design's numbers.",
+        "physical minimum of each step, computed from the plant's own numbers: full supply, then none, switched at "
+        "the last instant at which the far side of the band is not passed; converter lag, dead time, ceiling of the "
+        "supply, crossing of the deadband, rate limit and lag of the stem are in it, twice where braking needs them;"
+        " one tick is added, because a command goes out a tick after the reading, and it is rounded up to a tick. A "
+        "limit cycle is a swing of the true stem of more than 0.3 % (three standard deviations of one reading, "
+        "0.0006 in) that turns at least three times after the first quarter of a hold and is still there in the last"
+        " third; one such hold in a trial counts, and repeated corrections count like any other oscillation. `p` and"
+        " `open_loop` never settle. The valve starts vented and the learning controllers start with the design's "
+        "numbers.",
         tuple(numbers),
         lambda canvas: _dots(canvas, results, "steady"),
         (7.2, 4.2),
