@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 @click.argument("readings", type=click.Path(path_type=Path), required=False, metavar="[READINGS.csv]")
 @click.option("--profile", metavar="FILE|NAME", default="virtual", show_default=True, help="Profile to start from.")
 @click.option("--port", metavar="PORT", help="Read the signal from the bench, and type what the gauge shows.")
+@click.option("--at", "commands", metavar="X,X,...", help="With --port: commands to hold one after the other.")
 @click.option("--out", type=click.Path(path_type=Path, dir_okay=False), metavar="FILE.toml", help="New profile.")
 @click.option("--kind", type=click.Choice(["two-point", "table"]), default="table", show_default=True,
               help="A straight line, or a table through all positions.")  # fmt: skip
@@ -28,6 +29,7 @@ def command(
     readings: Path | None,
     profile: str,
     port: str | None,
+    commands: str | None,
     out: Path | None,
     kind: str,
     name: str | None,
@@ -38,53 +40,39 @@ def command(
     """Make the LVDT's calibration from dial-gauge readings, and put it into a copy of the profile.
 
     READINGS.csv has the columns `signal` (in the unit of the profile's position register) and `position_in`. Without
-    it, the bench at --port is read: type the gauge's position, one a line, and an empty line at the end. The valve is
-    not commanded; move it by other means (`lostmotion set` in another terminal cannot share the port).
+    it, the bench at --port is read: type the gauge's position, one a line, and an empty line at the end. With --at the
+    valve is moved from command to command, rising or falling, and waits at each for what you type; at the end it goes
+    to its safe command. Without --at it is not commanded.
     """
+    from app.gauge import ask
     from hal.clock import utc_now
     from hal.dial_gauge import fit, read_pairs, write_profile
     from hal.errors import BadInput
-    from hal.profile import FOLDER, load_profile
+    from hal.profile import load_profile
 
     load_profile(profile)
-    if (readings is None) == (port is None):
-        raise BadInput("give either READINGS.csv or --port")
-    today = utc_now().date()
+    if (readings is None) == (port is None) or (commands is not None and port is None):
+        raise BadInput("give either READINGS.csv, or --port and, if the valve is to be moved, --at")
+    pairs = read_pairs(readings) if readings is not None else ask(profile, str(port), commands)
+    today, until = utc_now().date(), None if expires is None else expires.date()
     found = fit(
-        read_pairs(readings) if readings is not None else _ask(profile, str(port)),
+        pairs,
         "two-point" if kind == "two-point" else "table",
         name=name or f"{kind}-{today}",
         made=today,
-        expires=None if expires is None else expires.date(),
+        expires=until,
         instrument=instrument,
     )
-    source = FOLDER / f"{profile}.toml" if (FOLDER / f"{profile}.toml").is_file() else Path(profile)
     if out is not None:
-        write_profile(source, out, found.calibration)
+        write_profile(_file_of(profile), out, found.calibration)
     _show(found, out, as_json)
 
 
-def _ask(profile: str, port: str) -> list[tuple[float, float]]:
-    """Pairs typed by the operator, the signal averaged over ten readings of the bench."""
-    from app.watch import open_to_look
-    from hal.assemble import NO_VALUE
+def _file_of(profile: str) -> Path:
+    from hal.profile import FOLDER
 
-    pairs: list[tuple[float, float]] = []
-    with open_to_look(port, profile) as (bench, _):
-        while text := click.prompt("gauge position [in], empty to end", default="", show_default=False).strip():
-            try:
-                position = float(text)
-            except ValueError:
-                click.echo(f"'{text}' is not a number", err=True)
-                continue
-            seen = [sample.position for sample in (bench.observe() for _ in range(10))]
-            values = [bench.profile.position_signal(r.value) for r in seen if not r.quality & NO_VALUE]
-            if not values:
-                click.echo("the bench gave no reading; try again", err=True)
-                continue
-            pairs.append((sum(values) / len(values), position))
-            click.echo(f"  signal {pairs[-1][0]:.5f} at {position:g} in")
-    return pairs
+    ours = FOLDER / f"{profile}.toml"
+    return ours if ours.is_file() else Path(profile)
 
 
 def _show(found: Fit, out: Path | None, as_json: bool) -> None:

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import select
-import sys
 from collections.abc import Iterator
 
 import click
@@ -88,23 +85,16 @@ def _parse(step: str) -> tuple[bool, float]:
 
 def _typed() -> Iterator[tuple[bool, float] | None]:
     """Steps typed one a line; None while nothing is typed, so that the bench is served and its watchdog content."""
+    from app.typed import typed_lines
     from hal.errors import BadInput
 
-    stdin, text = sys.stdin.fileno(), ""
-    while True:
-        line, newline, rest = text.partition("\n")
-        if newline:
-            text = rest
-            if line.strip() in ("", "q", "quit"):
-                return
+    for line in typed_lines():
+        if line is None:
+            yield None
+        elif line in ("", "q", "quit"):
+            return
+        else:
             try:
                 yield _parse(line)
             except BadInput as error:
                 click.echo(str(error), err=True)
-        elif select.select([stdin], [], [], 0.0)[0]:
-            data = os.read(stdin, 4096)
-            if not data:
-                return
-            text += data.decode("utf-8", "replace")
-        else:
-            yield None

@@ -189,7 +189,7 @@ def test_probe_finds_the_device(device, capsys) -> None:
         (("probe", "--port", "x", "--units", "0"), 2, "unit ids go from 1 to 247"),
         (("probe", "--port", "x", "--bauds", "fast"), 2, "--bauds fast"),
         (("probe", "--port", "tcp://h"), 2, "has no speed to look for"),
-        (("calibrate",), 2, "give either READINGS.csv or --port"),
+        (("calibrate",), 2, "give either READINGS.csv, or --port"),
         (("calibrate", "none.csv"), 2, "none.csv cannot be read"),
     ],
 )
