@@ -118,5 +118,6 @@ def fine_step_s(design: DesignModel, recording: Recording) -> float:
     """Step of the fine grid [s]: short against the lags, but no more than about 4,000,000 steps in all."""
     # a lag far shorter than the sampling period cannot be told from a jump: no finer than a twentieth of the period
     shortest = max(0.01, min(0.05, recording.period_s / 20.0))
-    wanted = min(0.1, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, shortest))
+    coarsest = max(0.1, recording.period_s / 10.0)  # rows that come slowly are of a slow machine
+    wanted = min(coarsest, max(min(design.tau_s, 4.0 * design.ep_tau_s) / 25.0, shortest))
     return max(wanted, recording.duration_s / 4_000_000.0)

@@ -15,12 +15,12 @@ from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
-from twin.closure import gap
+from twin.closure import gap, rms
 from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, heldout_parts
+from twin.gap import GapParts, heldout_parts, upheld
 from twin.lateness import late_commands
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
@@ -111,9 +111,10 @@ def diagnose(
         ep_share = where.stage["ep"].value if where.stage else 0.0
         loud = disturbance(case, settings.margin.position)
         judgement = pronounce(result, sensing, ep_share, settings.weights, loud)
-        final = _final_plant(case, result, judgement, retuned, sensing)
         progress("held-out gap", 0.0)
         parts = heldout_parts(look, result, judgement, retuned, sensing, stage.told(progress))
+        parts, judgement = upheld(parts, judgement, case.sigma_y, sensing)
+        final = _final_plant(case, result, judgement, retuned, sensing)
         diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
         loop = closed_loop(recordings, final)
@@ -147,7 +148,7 @@ def _assembled(
     settings: Settings,
     notes: Sequence[DataNote],
 ) -> Diagnosis:
-    floor = case.sigma_y
+    floor = _floor(case, parts, judgement)
     memory = case.noise.position.correlation_samples
     numbers = gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, settings.seed)
     causes = tuple(replace(c, heldout_gap_without=parts.without.get(c.name)) for c in judgement.causes)
@@ -175,6 +176,15 @@ def _assembled(
         version=_version(),
     )
     return replace(diagnosis, statement=statement(diagnosis))
+
+
+def _floor(case: Case, parts: GapParts, judgement: Judgement) -> float:
+    """The noise of the position; where named causes predict better than repeats agree, no more than is left."""
+    if not judgement.causes:
+        return case.sigma_y
+    known = case.noise.position.by_source
+    resting = known.get("still", known.get("straight", case.sigma_y))
+    return min(case.sigma_y, max(rms(parts.after), resting))
 
 
 def _noise(case: Case) -> dict[str, object]:

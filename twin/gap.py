@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -22,6 +22,8 @@ Progress = Callable[[str, float], None]
 
 #: Candidates of the ranking whose own held-out gap is worth computing.
 _RANKED = 6
+#: Of the error before; a model that leaves more has explained nothing.
+NO_BETTER = 0.95
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,6 +62,22 @@ def heldout_parts(
     alone = _alone(case, result, named, percent)
     progress("held-out gap", 1.0)
     return GapParts(before, again, after, without, alone)
+
+
+def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing) -> tuple[GapParts, Judgement]:
+    """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
+
+    A cause is not named for an error below the noise, nor when the model with it predicts no better. What the readings
+    themselves showed (false, held, coarse ones) needs no prediction.
+    """
+    if not judgement.causes or sensing.accepted:
+        return parts, judgement
+    before, after = rms(parts.before), rms(parts.after)
+    if before <= floor:
+        return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
+    if after > NO_BETTER * before:
+        return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
+    return parts, judgement
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:

@@ -15,12 +15,11 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.case import Case
 from twin.fit.trial import Trial
-from twin.noise.model import SignalNoise
+from twin.noise.model import LOUD
 from twin.noise.repeats import find_repeats
 
-#: Repeats are too different when they differ by so many times the resting reading's noise,
-LOUD = 4.0
-#: and by this share of travel, or by the pressure that moves the stem so far.
+#: Repeats are too different when they differ by many times the resting reading's noise (`LOUD`), and by this share of
+#: travel, or by the pressure that moves the stem so far.
 MATERIAL = 0.006
 
 
@@ -60,15 +59,9 @@ def disturbance(case: Case, margin_position: float = 0.0) -> Disturbance | None:
         ("pressure", case.noise.pressure, design.compliance, design.pressure_unit),
     )
     for name, noise, gain, unit in signals:
-        if noise is None or noise.source != "repeats":
+        if noise is None or noise.source == "repeats":
             continue
-        resting = _resting(noise)
-        if noise.sigma > LOUD * resting and noise.sigma * gain > slack:
-            return Disturbance(name, noise.sigma, resting, unit)
+        between = noise.by_source.get("repeats", 0.0)
+        if between > LOUD * noise.sigma and between * gain > slack:
+            return Disturbance(name, between, noise.sigma, unit)
     return None
-
-
-def _resting(noise: SignalNoise) -> float:
-    """Noise of the signal at rest, or of its fast part where it never rested."""
-    known = [noise.by_source[k] for k in ("still", "straight", "high_frequency") if k in noise.by_source]
-    return known[0] if known else noise.sigma

@@ -4,10 +4,18 @@ from __future__ import annotations
 
 from twin.diagnosis import Cause, Diagnosis
 
+#: Up to so many times the noise an error is "as well as the noise allows".
+_LIKE = 1.3
+
 
 def statement(diagnosis: Diagnosis) -> str:
     """The verdict in plain words, with the numbers that carry it."""
     g = diagnosis.gap
+    if diagnosis.verdict == "no_gap" and g.before > _LIKE * g.noise_floor:
+        return (
+            f"No gap that a cause accounts for: the design is off by {g.before:.2g} % of travel, more than the "
+            f"reading's noise of {g.noise_floor:.2g} %, but in a way that does not come back or is too small to matter."
+        )
     if diagnosis.verdict == "no_gap":
         return (
             f"No gap: the design predicts this record to {g.before:.2g} % of travel, "

@@ -27,6 +27,8 @@ Rows = npt.NDArray[np.int64]
 MOST_ROWS = 20_000
 LOOK_ROWS = 12_000
 MOST_S = 2_400.0
+#: Whatever the seconds, so few steps of simulation make no large record: a slow machine is read every ten seconds.
+MOST_STEPS = 60_000
 LOOK_S = 1_200.0
 #: Windows are about so long [s], and each is the liveliest of so many in its part of the record.
 _WINDOW_S = 300.0
@@ -78,7 +80,8 @@ def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: 
 
 def _spans(case: Case) -> tuple[Span, ...]:
     total_s = sum(r.duration_s for r in case.recordings)
-    if total_s <= MOST_S:
+    steps = sum(t.grid.n_fine for t in case.trials)
+    if total_s <= MOST_S or steps <= MOST_STEPS:
         return tuple(Span(k, 0, r.n) for k, r in enumerate(case.recordings))
     spans: list[Span] = []
     for k, recording in enumerate(case.recordings):

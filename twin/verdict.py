@@ -101,16 +101,18 @@ def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
     """
     deviations = fit.deviations(scale=(phi * max(fit.mse, 1.0)) ** 0.5)
     values = fit.values()
+    bounds = [(u.centre + u.unit * u.lower, u.centre + u.unit * u.upper) for u in fit.space.unknowns]
     design = fit.space.base.design
     found: dict[tuple[str, str], Estimate] = {}
     for k, name in enumerate(fit.space.numbers):
         if f"parameter:{name}" in fit.names:
             label = (f"parameter:{name}", name)
-            found[label] = _estimate(values[k], deviations[k], unit(design, name))
+            found[label] = _estimate(values[k], deviations[k], bounds[k], unit(design, name))
     at = len(fit.space.numbers)
     for candidate in fit.space.causes:
         for offset, (name, its_unit) in enumerate(_parameters(candidate, fit)):
-            found[(candidate.name, name)] = _estimate(values[at + offset], deviations[at + offset], its_unit)
+            k = at + offset
+            found[(candidate.name, name)] = _estimate(values[k], deviations[k], bounds[k], its_unit)
         at += len(candidate.form.parameters) if candidate.form else 0
     return found
 
@@ -121,8 +123,10 @@ def _parameters(candidate: Candidate, fit: Fit) -> list[tuple[str, str]]:
     return [(p.name, fit.space.scales.unit(p.kind)) for p in candidate.form.parameters]
 
 
-def _estimate(value: float, deviation: float, its_unit: str) -> Estimate:
-    return Estimate(float(value), (float(value - 1.96 * deviation), float(value + 1.96 * deviation)), its_unit)
+def _estimate(value: float, deviation: float, bounds: tuple[float, float], its_unit: str) -> Estimate:
+    """The value with its 95 % interval, cut off where the parameter ends."""
+    low, high = max(value - 1.96 * deviation, min(bounds)), min(value + 1.96 * deviation, max(bounds))
+    return Estimate(float(value), (float(min(low, value)), float(max(high, value))), its_unit)
 
 
 def _ranking(weighed: list[Weighed], sensing: Sensing) -> tuple[Ranked, ...]:

@@ -94,6 +94,9 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
     try:
         with diagnosis_progress() as progress:
             outcome = diagnose(recordings, model, inserted_from(model), Settings(seed=seed), progress)
+            if origin == "identified from the record" and outcome.diagnosis.verdict == "parameter":
+                # The numbers come from this very record: they cannot be off, they were only not found well enough.
+                outcome = diagnose(recordings, outcome.model, (), Settings(seed=seed), progress)
             write_outcome(outcome, out, progress)
     except Interrupted as stop:
         _leave(stop.diagnosis, model, out)

@@ -27,6 +27,7 @@ def look(case: Case, monkeypatch: pytest.MonkeyPatch, most_rows: int = 1000, mos
     monkeypatch.setattr(thin, "MOST_ROWS", most_rows)
     monkeypatch.setattr(thin, "LOOK_ROWS", most_rows)
     monkeypatch.setattr(thin, "MOST_S", most_s)
+    monkeypatch.setattr(thin, "MOST_STEPS", 0)
     monkeypatch.setattr(thin, "LOOK_S", 100.0)
     monkeypatch.setattr(thin, "_WINDOW_S", 50.0)
     return look_at(case)[0]

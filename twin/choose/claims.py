@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from twin.choose.score import Yardstick
 from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
@@ -24,6 +26,26 @@ def size_of(fit: Fit) -> int:
     """How much a hypothesis claims: its effects and accused numbers; wrong numbers alone are one claim together."""
     effects = sum(1 for c in fit.space.causes if c.effect is not None)
     return len(fit.space.causes) if effects else min(len(fit.space.causes), 1)
+
+
+def hollow(fit: Fit, phi: float) -> bool:
+    """Whether an effect of the hypothesis has no size: every size within a standard deviation of nothing.
+
+    Its nuisances then do what it takes the credit for. `phi`: residual samples worth one independent one.
+    """
+    if not any(c.form is not None for c in fit.space.causes):
+        return False
+    deviations = fit.deviations((phi * max(fit.mse, 1.0)) ** 0.5)
+    units = np.abs([u.unit for u in fit.space.unknowns])
+    at = len(fit.space.numbers)
+    for cause in fit.space.causes:
+        parameters = cause.form.parameters if cause.form is not None else ()
+        sizes = [(at + k, p.smooth) for k, p in enumerate(parameters) if p.size]
+        at += len(parameters)
+        # where the response jumps no slope says how sure a size is
+        if sizes and all(smooth and abs(fit.z[k]) * units[k] < deviations[k] for k, smooth in sizes):
+            return True
+    return False
 
 
 def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:

@@ -67,7 +67,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             break
         accepted = better
         size = size_of(better)
-    accepted = _with_numbers(findings, accepted, rules)
+    accepted = _with_numbers(findings, _plainer_member(findings, accepted, rules), rules)
     size = size_of(accepted)
     before = max(findings.none.mse - floor, 0.0)
     rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
@@ -84,6 +84,23 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
     return min(near, key=lambda f: (len(f.names), -findings.score(f))) if near else fit
+
+
+def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+    """`fit`, or the same with a wrong number in place of one effect, if what the effect does better is immaterial."""
+    if len(fit.names) < 2:
+        return fit
+    near = [
+        f
+        for f in findings.fits
+        if len(f.names) == len(fit.names) and f.mse <= fit.mse + rules.plain and len(set(fit.names) - set(f.names)) == 1
+    ]
+    near = [f for f in near if _effects(f) < _effects(fit) and findings.score(f) > findings.score(fit) - rules.evidence]
+    return max(near, key=findings.score) if near else fit
+
+
+def _effects(fit: Fit) -> set[str]:
+    return {c.name for c in fit.space.causes if c.effect is not None}
 
 
 def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:

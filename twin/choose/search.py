@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.choose.candidates import effect_causes, number_causes
-from twin.choose.claims import best_forms, same_claim, size_of, some_of_each, suspected, together
+from twin.choose.claims import best_forms, hollow, same_claim, size_of, some_of_each, suspected, together
 from twin.choose.pairs import promising_pairs
 from twin.choose.score import Yardstick, make_yardstick
 from twin.choose.screen import make_screen, prospects
@@ -68,7 +68,7 @@ class Findings:
 
     def best_of_size(self, size: int) -> Fit | None:
         """The hypothesis of `size` (see `size_of`) with the highest score, or None."""
-        same = [f for f in (self.none, *self.fits) if size_of(f) == size]
+        same = [f for f in (self.none, *self.fits) if size_of(f) == size and not hollow(f, self.phi)]
         return max(same, key=self.score) if same else None
 
 

@@ -16,6 +16,9 @@ from twin.choose.claims import size_of
 from twin.choose.decide import Decision
 from twin.fit.fitting import Fit
 
+#: Nats that a further wrong number has to be worth to count as a hypothesis of its own.
+_COMPANION = 3.0
+
 
 @dataclass(frozen=True, slots=True)
 class Weights:
@@ -62,9 +65,19 @@ def _comparable(decision: Decision) -> list[Fit]:
     size = size_of(accepted)
     everything = (decision.findings.none, *decision.findings.fits)
     fits = [f for f in everything if size_of(f) <= size and f is not accepted]
+    fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
     if accepted.names and all(c.effect is None for c in accepted.space.causes):
         fits = [f for f in fits if not _leans_on(f, accepted)]
     return [*fits, accepted]
+
+
+def _adds_nothing(decision: Decision, fit: Fit, everything: Sequence[Fit]) -> bool:
+    """Whether fewer wrong numbers do as well: each number would otherwise be believed once for every companion."""
+    if len(fit.names) < 2 or any(c.effect is not None for c in fit.space.causes):
+        return False
+    least = decision.findings.score(fit) - _COMPANION
+    fewer = [f for f in everything if set(f.names) < set(fit.names) and f.names]
+    return any(decision.findings.score(f) >= least for f in fewer)
 
 
 def _leans_on(fit: Fit, accepted: Fit) -> bool:

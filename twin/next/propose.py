@@ -29,6 +29,8 @@ FILE = "next.toml"
 _HELPS = 0.3
 #: What is asked of an experiment beyond what settles a dispute on average: half of the time less comes out.
 _SAFE = 1.5
+#: Times the noise: what named causes may leave before it is worth a word.
+_MUCH = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,15 @@ def propose(
     open_ = disputes(result, judgement)
     if not open_ and judgement.causes:
         sure = min(c.probability for c in judgement.causes)
+        left = max(d.accepted.mse for d in result.decisions) ** 0.5
+        if left > _MUCH:
+            return Proposal(
+                NextExperiment(
+                    f"No experiment is needed to name the causes (probability at least {sure:.2f}); they leave "
+                    f"{left:.2g} times the noise, which no candidate explains: repeat the record to see whether that "
+                    "repeats."
+                )
+            )
         return Proposal(
             NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
         )

@@ -26,6 +26,7 @@ from twin.noise.still import even_windows, fast_memory, given_back, held_windows
 Source = Literal["repeats", "still", "straight", "high_frequency", "none"]
 
 _TAIL = 4.5  # sigmas; a Gaussian reading passes it once in 150,000
+LOUD = 4.0  # times the resting noise: a difference of repeats beyond it has a cause
 _LEAST = 200  # samples before a source is trusted
 
 
@@ -112,12 +113,23 @@ def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPa
     # a coarse reading stands still without being right: it is never better than its step allows
     least = (lattice_step(np.concatenate([getattr(r, name) for r in known])) or 0.0) / sqrt(12.0)
     for source, pieces in sources.items():
+        if source == "repeats" and _louder(by_source):
+            continue
         if _rows(pieces) >= _LEAST:
             return _measured(source, pieces, period, tail_p, ratio, by_source, least)
     sigma, rows = max(level, least), sum(r.n for r in known)
     memory, fresh = (1.0 + phi) / (1.0 - phi), sigma * sqrt(1.0 - phi**2)
     ar = (phi,) if phi > 0.0 else ()
     return SignalNoise(sigma, memory, "high_frequency", rows, period, ar, fresh, tail_p, ratio, by_source)
+
+
+def _louder(by_source: Mapping[str, float]) -> bool:
+    """Whether repeats differ so much more than the resting signal that the difference is no noise of the reading.
+
+    A deadband that grows, a disturbance that comes once: as a floor it would hide its own cause.
+    """
+    resting = by_source.get("still", by_source.get("straight"))
+    return resting is not None and by_source.get("repeats", 0.0) > LOUD * max(resting, by_source["high_frequency"])
 
 
 def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "any", "straight"]) -> list[FloatArray]:

@@ -1,0 +1,69 @@
+"""A named cause stands only if unseen data bear it out; an effect without a size is none; intervals end at bounds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin.catalog import effect
+from twin.choose.claims import hollow
+from twin.diagnosis import Cause as Named
+from twin.effect import Scales
+from twin.fit.channel import position_channel
+from twin.fit.fitting import fit
+from twin.fit.space import Cause, make_space
+from twin.gap import GapParts, upheld
+from twin.plant import Inserted, Plant
+from twin.sensing import Sensing
+from twin.verdict import Judgement, estimates
+
+NAMED = Judgement("effect", (Named("creep", "actuator", 0.9, None, {}),), (), (("creep", "stiction"),))
+NOTHING_SEEN = Sensing((), {}, 0.0)
+
+
+def parts(before: float, retuned: float, after: float) -> GapParts:
+    return GapParts(*(np.full(8, level) for level in (before, retuned, after)), {}, {})
+
+
+@pytest.mark.parametrize(
+    ("levels", "verdict", "left"),
+    [
+        ((3.0, 2.0, 0.2), "effect", 0.2),
+        ((3.0, 2.0, 14.0), "unexplained", 2.0),  # the model with the cause is worse than the one without
+        ((0.9, 0.8, 0.5), "no_gap", 0.9),  # an error below the noise has no cause
+    ],
+)
+def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, left: float) -> None:
+    kept, judgement = upheld(parts(*levels), NAMED, 1.0, NOTHING_SEEN)
+    assert judgement.verdict == verdict
+    assert bool(judgement.causes) == (verdict == "effect")
+    assert kept.after[0] == left
+
+
+def test_what_the_readings_showed_needs_no_prediction() -> None:
+    seen = Sensing((), {"sensor_quantization": {}}, 0.01)
+    assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen)[1] is NAMED
+
+
+def test_an_effect_without_a_size_is_hollow() -> None:
+    form = effect("spring_asymmetry").form("hinged_open")
+    cause = Cause("spring_asymmetry", effect("spring_asymmetry"), form)
+    for truth, empty in (((), True), ((Inserted("spring_asymmetry", form, (0.08,)),), False)):
+        trial, _ = trial_of(Plant(DESIGN, truth), staircase())
+        channel = position_channel([trial], SIGMA)
+        found = fit(channel, make_space(Plant(DesignModel()), (cause,), channel.numbers, Scales()), [np.zeros(6)])
+        # a start at nothing stays there when nothing is missing, noise aside
+        assert hollow(found, 4.0) is empty
+
+
+def test_intervals_end_where_the_parameter_does() -> None:
+    form = effect("linkage_lost_motion").form("play")
+    cause = Cause("linkage_lost_motion", effect("linkage_lost_motion"), form)
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    channel = position_channel([trial], SIGMA)
+    space = make_space(Plant(DesignModel()), (cause,), channel.numbers, Scales())
+    found = estimates(fit(channel, space, [np.full(6, 1e-3)]), 1.0)[("linkage_lost_motion", form.parameters[0].name)]
+    assert found.ci95[0] >= 0.0
+    assert found.ci95[0] <= found.value <= found.ci95[1]
