@@ -106,15 +106,19 @@ def _play(session: Session, loop: Loop, job: Job) -> Outcome:
 
 @contextmanager
 def undisturbed() -> Iterator[None]:
-    """While open, the interpreter itself makes ticks as little late as it can.
+    """While open, system and interpreter make the ticks of this thread as little late as they can.
 
-    A thread may hold it for 5 ms by default, and a full garbage collection walks over every library that is loaded.
+    A thread may hold the interpreter for 5 ms by default, and a full garbage collection walks over every library that
+    is loaded.
     """
+    from hal.promptly import short_turns
+
     before_s = sys.getswitchinterval()
     sys.setswitchinterval(SWITCH_S)
     gc.freeze()
     try:
-        yield
+        with short_turns():
+            yield
     finally:
         gc.unfreeze()
         sys.setswitchinterval(before_s)

@@ -31,9 +31,14 @@ def main() -> None:
 
 
 def work(pipe: int, stream: LiveStream, clock: Clock) -> None:
-    """Hands on what comes out of the pipe, ten times a second, until it ends. Raises: what the stream raises."""
+    """Hands on what comes out of the pipe, ten times a second, until it ends. Raises: what the stream raises.
+
+    After each pause it takes what is there and waits for what comes next. That is the loop at the end of a tick: until
+    the next one it has no use for the processor.
+    """
     unpacker = Unpacker()
     while data := os.read(pipe, 1 << 20):
+        data += os.read(pipe, 1 << 20)
         stream.take(list(unpacker.feed(data)))
         clock.sleep_until(clock.now_s() + PERIOD_S)
     stream.close()

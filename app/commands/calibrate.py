@@ -41,8 +41,7 @@ def command(
 
     READINGS.csv has the columns `signal` (in the unit of the profile's position register) and `position_in`. Without
     it, the bench at --port is read: type the gauge's position, one a line, and an empty line at the end. With --at the
-    valve is moved from command to command, rising or falling, and waits at each for what you type; at the end it goes
-    to its safe command. Without --at it is not commanded.
+    valve is moved from command to command and waits at each for what you type; then it goes to its safe command.
     """
     from app.gauge import ask
     from hal.clock import utc_now
