@@ -23,7 +23,10 @@ EP_RATE_UP = 7  # [pressure/s]
 EP_RATE_DOWN = 8
 EP_SUPPLY = 9  # highest pressure [pressure]
 EP_CLIP = 10  # pressure that is cut off rather than aimed at [pressure]
-EP_COUNT = 11
+EP_TANK = 11  # pressure of a supply that sinks as air is drawn from it [pressure]
+EP_DRAW = 12  # by how much it sinks for each unit that the pressure rises [-]
+EP_REFILL_S = 13  # time constant with which it comes back [s]
+EP_COUNT = 14
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -89,8 +92,8 @@ PLAYS = 12
 def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
     c = np.zeros(EP_COUNT)
-    c[EP_GAIN] = 1.0
-    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP]] = FOREVER
+    c[[EP_GAIN, EP_REFILL_S]] = 1.0
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK]] = FOREVER
     return c
 
 

@@ -33,6 +33,7 @@ class PlainValve:
     hold_band: float = 0.0
     pressure_rate: float = inf
     supply: float = inf
+    tank: float = inf  # a supply that sinks by 0.4 of every rise and comes back in 20 s
     cut_off: float = inf
     a1: float = 8.78
     a2: float = 5.82
@@ -74,13 +75,16 @@ class PlainValve:
             p - self.push(x0), x0, 0.0, self.grip(x0), self.stretch(x0)
         )  # the play output that pressure allows
         x = slow = core = x0
+        sunk = 0.0
         lagged = self.reading(x, 0.0)
         out_p, out_y = [p], [self.reading(x, 0.0)]
         wanted, rests = set(rows.tolist()), True
         for i, u in enumerate(fine.tolist(), start=1):
             t = i * step_s
             held = u if abs(u - held) > self.hold_band else held
-            p = self._pressure(p, min(self.zero + self.gain * held, self.supply), step_s)
+            before = p
+            p = self._pressure(p, min(self.zero + self.gain * held, self.supply, self.tank - sunk), step_s)
+            sunk += 0.4 * max(p - before, 0.0) - sunk * step_s / 20.0
             w = self._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
             tau = self.tau_close if v > x else self.tau_open

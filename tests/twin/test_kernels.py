@@ -68,6 +68,7 @@ SAME = {
     "fill_exhaust": (plant_with("fill_exhaust_asymmetry", "two_lags", 0.4), PlainValve(rise=1.4, fall=0.6)),
     "ep_rate_limit": (plant_with("ep_rate_limit", "symmetric", 0.5), PlainValve(pressure_rate=2.0)),
     "supply": (plant_with("supply_saturation", "ceiling", 10.5), PlainValve(supply=10.5)),
+    "sinking": (plant_with("supply_saturation", "sinking", 12.5, 0.4, 20.0), PlainValve(tank=12.5)),
     "cut_off": (plant_with("supply_saturation", "cut_off", 10.5), PlainValve(cut_off=10.5)),
     "held_stem": (plant_with("stiction", "held_stem", 0.4, 4e-3), PlainValve(held=0.076, stick_speed=4e-3)),
     "spring": (plant_with("spring_asymmetry", "hinged_open", 0.1), PlainValve(k1=0.19 / 0.9, k2=0.19 / 1.1)),

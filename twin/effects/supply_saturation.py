@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_CLIP, EP_SUPPLY
+from twin.slots import EP_CLIP, EP_DRAW, EP_REFILL_S, EP_SUPPLY, EP_TANK
 
 _SUPPLY = Parameter(
     name="supply",
@@ -24,16 +24,47 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_SUPPLY] = values[0]
 
 
+def _sinks(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_TANK, EP_DRAW, EP_REFILL_S]] = values
+
+
 def _clip(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_CLIP] = values[0]
 
+
+_DRAW = Parameter(
+    name="draw",
+    kind="fraction",
+    lower=0.0,
+    upper=3.0,
+    starts=(0.1, 0.4),
+    scale=0.3,
+    doc="by how much the supply sinks for each unit that the pressure rises",
+    size=False,
+)
+_REFILL = Parameter(
+    name="refill",
+    kind="time",
+    lower=0.5,
+    upper=900.0,
+    starts=(5.0, 40.0),
+    scale=30.0,
+    doc="time constant with which the supply comes back",
+    neutral=30.0,
+    size=False,
+)
 
 EFFECT = Effect(
     name="supply_saturation",
     stage="ep",
     claim="Pressure cannot exceed what the air supply gives.",
-    equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply",
+    equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply; "
+    "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction)",
     source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators)",
-    forms=(Form("ceiling", (_SUPPLY,), _apply), Form("cut_off", (_SUPPLY,), _clip)),
+    forms=(
+        Form("ceiling", (_SUPPLY,), _apply),
+        Form("cut_off", (_SUPPLY,), _clip),
+        Form("sinking", (_SUPPLY, _DRAW, _REFILL), _sinks),
+    ),
     twins=("ep_calibration",),
 )

@@ -14,10 +14,13 @@ from twin.slots import (
     EP_BAND_MODE,
     EP_CLIP,
     EP_DEAD_S,
+    EP_DRAW,
     EP_GAIN,
     EP_RATE_DOWN,
     EP_RATE_UP,
+    EP_REFILL_S,
     EP_SUPPLY,
+    EP_TANK,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     EP_ZERO,
@@ -43,8 +46,11 @@ def ep_kernel(
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
         goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
-    bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP]) < FOREVER
-    (_follow_bounded if bounded else _follow)(time_s, offsets, goal, c, p0, out)
+    bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
+    if bounded:
+        _follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
+    else:
+        _follow(time_s, offsets, goal, c, p0, out)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -139,14 +145,24 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _follow_bounded(
-    time_s: FloatArray, offsets: np.ndarray, goal: FloatArray, c: FloatArray, p0: float, out: FloatArray
+    time_s: FloatArray,
+    offsets: np.ndarray,
+    goal: FloatArray,
+    c: FloatArray,
+    p0: float,
+    sunk: FloatArray,
+    out: FloatArray,
 ) -> None:
-    """A lag toward the goal with an overlap band and limited slope."""
+    """A lag toward the goal with an overlap band and limited slope; `sunk[0]`: how far the supply has sunk, kept."""
     per_row = goal.size == time_s.size
     p = p0
     out[0] = p
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            p = _bounded_step(p, goal[i] if per_row else goal[f], h, c)
+            v = min(goal[i] if per_row else goal[f], c[EP_TANK] - sunk[0])
+            new = _bounded_step(p, v, h, c)
+            if c[EP_TANK] < FOREVER:
+                sunk[0] = sunk[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
+            p = new
             out[f] = p

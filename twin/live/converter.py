@@ -17,6 +17,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_SUPPLY,
+    EP_TANK,
     EP_ZERO,
     FOREVER,
 )
@@ -30,14 +31,18 @@ class Converter:
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
-        bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP]) < FOREVER
-        self._follow = _follow_bounded if bounded else _follow
+        bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
+        self._bounded = bool(bounded)
+        self._sunk = np.zeros(1)
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
         """Pressure on the fine points of the row, shape (steps + 1,); `command` was in force over the row."""
         goal = self._goal(time_s, offsets, command)
         out = np.empty(int(offsets[1]) + 1)
-        self._follow(time_s, offsets, goal, self._c, self.pressure, out)
+        if self._bounded:
+            _follow_bounded(time_s, offsets, goal, self._c, self.pressure, self._sunk, out)
+        else:
+            _follow(time_s, offsets, goal, self._c, self.pressure, out)
         self.pressure = float(out[-1])
         return out
 
