@@ -91,7 +91,7 @@ def _cause(dice: random.Random, item: Imperfection, form: str) -> Cause:
     low, high = _RANGE[0] * item.size(0, form), _RANGE[1] * item.size(2, form)
     size = low * (high / low) ** dice.random() if item.spread else item.size(grade, form)
     sign = -1.0 if item.signed and dice.random() < 0.5 else 1.0
-    return Cause(item.name, item.stage, form, float(f"{sign * min(size, item.limit):.4g}"), item.unit, "")
+    return Cause(item.name, item.stage, form, float(f"{item.within(sign * size):.4g}"), item.unit, "")
 
 
 def solve(number: int, label: Label, share: float = 1.0) -> dict[str, object]:

@@ -116,7 +116,7 @@ def _cause(dice: random.Random, item: Imperfection) -> Cause:
     grade = int(dice.random() * len(GRADES))
     spread = 10.0 ** (_SPREAD * (2.0 * dice.random() - 1.0)) if item.spread else 1.0
     sign = -1.0 if dice.random() < 0.5 and item.signed else 1.0
-    size = sign * min(item.size(grade, form) * spread, item.limit)
+    size = item.within(sign * item.size(grade, form) * spread)
     return Cause(item.name, item.stage, form, float(f"{size:.4g}"), item.unit, GRADES[grade])
 
 

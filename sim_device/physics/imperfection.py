@@ -20,7 +20,8 @@ class Imperfection:
     `sizes` are small, medium and large [unit], chosen so that the position differs from the healthy one by about
     2, 6 and 20 times the reading noise over a mixed sweep, as far as the mechanism can do that.
     `forms` are the laws that physics knows for it; the first is the default. `scales` are the factors on `sizes` with
-    which the forms do about as much (none: all 1). `outsider` marks a fault that no effect
+    which the forms do about as much (none: all 1). Sizes go from -`limit` (`lowest`, where that is nearer) to `limit`.
+    `outsider` marks a fault that no effect
     of the shared vocabulary describes; without `spread`, sizes must be used as they are because little more or less
     does nothing or everything.
     """
@@ -33,6 +34,7 @@ class Imperfection:
     forms: tuple[str, ...] = ("default",)
     scales: tuple[float, ...] = ()
     limit: float = float("inf")
+    lowest: float = -float("inf")
     signed: bool = False
     outsider: bool = False
     spread: bool = True
@@ -42,6 +44,10 @@ class Imperfection:
         """The small (0), medium (1) or large (2) size in `form`, the default one if empty [unit]."""
         scale = self.scales[self.forms.index(form)] if self.scales and form else 1.0
         return self.sizes[grade] * scale
+
+    def within(self, size: float) -> float:
+        """The nearest size that there can be [unit]."""
+        return max(self.lowest, -self.limit, min(size, self.limit))
 
 
 @dataclass(frozen=True, slots=True)

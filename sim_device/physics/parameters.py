@@ -21,7 +21,9 @@ PARAMETERS = (
     Imperfection(
         "parameter:rate_limit", "actuator", "1", (0.1, 0.25, 0.5), "The rate limit is (1 - size) times.", signed=True
     ),
-    Imperfection("parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "The converter lags (1 + size) times.", signed=True),
+    Imperfection(
+        "parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "The converter lags (1 + size) times.", signed=True, lowest=-0.7
+    ),
 )
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hal.errors import BadInput
-from sim_device.physics.catalog import make_physics
+from sim_device.physics.catalog import imperfections, make_physics, parameters
 from sim_device.physics.offline import record
 from sim_device.sealed import SHARES, commit, draw, reveal, salt_of, unseal, write
 from tests.sim_device.physics.excitation import lively
@@ -59,6 +59,15 @@ def test_every_label_that_can_be_drawn_makes_a_valve() -> None:
     for seed in range(800):
         label = reveal(seed)
         make_physics(label.family, 1, effects={cause.key: cause.size for cause in label.causes})
+
+
+@pytest.mark.parametrize("family", ["thesis", "reference"])
+def test_the_ends_of_every_size_make_a_valve(family: str) -> None:
+    for item in (*imperfections(family), *parameters(family)):
+        for form in item.forms:
+            for sign in (1.0, -1.0) if item.signed else (1.0,):
+                size = item.within(sign * 10.0**0.12 * item.size(2, form))
+                make_physics(family, 1, effects={f"{item.name}/{form}" if form != "default" else item.name: size})
 
 
 def test_families_can_be_chosen() -> None:

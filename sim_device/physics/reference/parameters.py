@@ -28,7 +28,7 @@ PARAMETERS = (
     Imperfection(
         "parameter:rate_limit", "actuator", "1", (0.06, 0.15, 0.4), "The regulator is shut by `size`.", signed=True
     ),
-    Imperfection("parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "A larger signal chamber.", signed=True),
+    Imperfection("parameter:ep_tau", "ep", "1", (0.2, 0.6, 2.0), "A larger signal chamber.", signed=True, lowest=-0.7),
 )
 
 
