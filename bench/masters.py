@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import time
+from abc import ABC, abstractmethod
 from collections.abc import Awaitable, Callable, Sequence
 from typing import Any
 
@@ -19,14 +20,15 @@ WORDS = (0x40E8, 0x0000)
 Question = tuple[str, int, int]  # (kind, address, count); kind is FC03, FC16 or FC23
 
 
-class Master:
-    """`ask` answers a `Question` with the registers that were read (empty for a write)."""
+class Master(ABC):
+    """Somebody who asks slaves over a line."""
 
     name = ""
     kinds: tuple[str, ...] = ("FC03", "FC16", "FC23")
 
+    @abstractmethod
     def ask(self, question: Question) -> Sequence[int]:
-        raise NotImplementedError
+        """The registers that were read; empty for a write."""
 
     def durations_s(self, question: Question, times: int) -> list[float]:
         """How long each of `times` repetitions took [s]."""

@@ -22,7 +22,6 @@ LONG_FILES = {
     "tests/app/test_diagnose.py",
     "tests/hal/test_bus.py",
     "tests/hal/test_modbus_bench.py",
-    "tests/logs/test_load.py",
 }
 LONG_FUNCTIONS = {
     "app/commands/compare.py:command",
