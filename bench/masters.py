@@ -34,7 +34,8 @@ class Master(ABC):
         """How long each of `times` repetitions took [s]."""
         return [_timed(lambda: self.ask(question)) for _ in range(times)]
 
-    def close(self) -> None: ...
+    def close(self) -> None:  # noqa: B027 - most masters have nothing to close
+        """Lets go of the line, where there is something to let go of."""
 
 
 def _timed(action: Callable[[], object]) -> float:
