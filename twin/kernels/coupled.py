@@ -44,7 +44,7 @@ State = tuple[float, float, float, bool, float, float, float, float]
 _SAME = 1e-9
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
     """Linear interpolation in a uniform table, extended by its end slopes."""
     q = (p - p_first) / p_step
@@ -61,7 +61,7 @@ def _decays(h: float, c: FloatArray, lags: FloatArray) -> None:
         lags[k, 1] = c[slot] / h if c[slot] > 1e-9 else 0.0
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _toward(x: float, w_a: float, w_b: float, lag: FloatArray) -> float:
     """Exact step of a lag for an input linear from w_a to w_b."""
     slope_tau = (w_b - w_a) * lag[1]
@@ -69,7 +69,7 @@ def _toward(x: float, w_a: float, w_b: float, lag: FloatArray) -> float:
     return new
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _jumps(e: float, free: float, held: float) -> float:
     """Where an element that sticks again at once stands: whole jumps away from `e`, the last one short of `free`.
 
@@ -81,7 +81,7 @@ def _jumps(e: float, free: float, held: float) -> float:
     return where
 
 
-@njit(inline="always", nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _held(
     q: float, band: Grown, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
 ) -> tuple[float, float]:
@@ -97,7 +97,7 @@ def _held(
     return bottom, top
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _play_step(
     q: float,
     grown: Grown,
@@ -137,7 +137,7 @@ def _play_step(
     return w, slipped
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _half_band(wide: float, state: State, c: FloatArray, bends: Bends) -> Grown:
     """What is added to the half deadband now, by time, wear, speed and where the stem is; and the compliance there."""
     grown: float = wide + c[V_WEAR] * state[6]
@@ -150,7 +150,7 @@ def _half_band(wide: float, state: State, c: FloatArray, bends: Bends) -> Grown:
     return grown + closing, grown - opening, _look_up(state[0], 0.0, step, bends[2])
 
 
-@njit(inline="always", nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _breakaway(state: State, c: FloatArray) -> tuple[float, float]:
     """What it takes beyond sliding friction to close and to open now.
 
@@ -163,7 +163,7 @@ def _breakaway(state: State, c: FloatArray) -> tuple[float, float]:
     return 0.0 if slides > 0.0 else extra, 0.0 if slides < 0.0 else extra
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -> float:
     """The stem after `h` seconds on its way from x to `new`, no faster than its rates and within its stops."""
     slow = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
@@ -171,7 +171,7 @@ def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -
     return bounded
 
 
-@njit(inline="always", nogil=True, error_model="numpy")
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _move(
     h: float, new_w: float, slipped: bool, c: FloatArray, stops: FloatArray, lags: FloatArray, state: State
 ) -> State:
