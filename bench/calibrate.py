@@ -21,9 +21,12 @@ from dataclasses import asdict
 from multiprocessing import get_context
 from pathlib import Path
 
+import numpy as np
+
+from app.blind.calibration import error
 from app.blind.designs import baseline, margin
 from app.blind.excite import commands, open_loop
-from app.blind.features import decision_features
+from app.blind.features import decision_features, tempered
 from app.blind.mark import mark
 from app.blind.strength import stratum, strength
 from logs.recording import Recording
@@ -36,6 +39,7 @@ from twin.diagnose import Settings, diagnose
 from twin.insert import inserted_from
 
 SHARES = {"effect": 0.50, "none": 0.14, "parameter": 0.12, "effects": 0.14, "outsider": 0.10}
+TEMPERATURES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)
 _RANGE = (0.3, 1.2)  # sizes go from this share of a small one to this multiple of a large one
 
 
@@ -119,6 +123,7 @@ def solve(number: int, label: Label, share: float = 1.0) -> dict[str, object]:
         "where_stage": said["where"]["stage"],  # type: ignore[index]
         "mark": asdict(mark(label, said)),
         "features": decision_features(outcome),
+        "tempered": tempered(outcome, TEMPERATURES),
         "seconds": round(seconds, 2),
     }
 
@@ -171,6 +176,22 @@ def summary(path: Path) -> None:
         print(f"{len(broken)} cases broke the diagnosis: {sorted({line['error'] for line in broken})}")
 
 
+def temperatures(path: Path) -> None:
+    """Prints what the causes named in a bank would have been worth at each temperature: log loss, Brier score, ECE."""
+    lines = [json.loads(text) for text in path.read_text(encoding="utf-8").splitlines()]
+    kept = [line for line in lines if "error" not in line]
+    print("temperature  claims  log loss   Brier     ECE")
+    for name in (f"{t:g}" for t in TEMPERATURES):
+        claims = []
+        for line in kept:
+            true = {cause["name"] for cause in line["label"]["causes"]}
+            claims += [(p, cause in true) for cause, p in line["tempered"][name].items()]
+        said = np.array([p for p, _ in claims])
+        right = np.array([float(hit) for _, hit in claims])
+        loss = -float(np.mean(np.log(np.clip(np.where(right > 0.0, said, 1.0 - said), 1e-6, 1.0))))
+        print(f"{name:>11}  {said.size:6}  {loss:8.3f}  {np.mean((said - right) ** 2):6.3f}  {error(claims):6.3f}")
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--cases", type=int, default=100)
@@ -181,7 +202,11 @@ def main() -> None:
     parser.add_argument("--share", type=float, default=1.0, help="length of the test sequence")
     parser.add_argument("--processes", type=int, default=2)
     parser.add_argument("--summary", type=Path, help="only print what is in this file")
+    parser.add_argument("--temperatures", type=Path, help="only print what is in this file, at every temperature")
     asked = parser.parse_args()
+    if asked.temperatures:
+        temperatures(asked.temperatures)
+        return
     if asked.summary:
         summary(asked.summary)
         return

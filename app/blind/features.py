@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from twin.choose.decide import Decision
     from twin.choose.search import Findings
     from twin.diagnose import Outcome
@@ -16,6 +18,17 @@ _KEPT = 8
 def decision_features(outcome: Outcome) -> dict[str, object]:
     """Per channel: fits in units of the noise variance, what is left, and the scores of the best hypotheses."""
     return {decision.findings.channel.name: _of(decision) for decision in outcome.result.decisions}
+
+
+def tempered(outcome: Outcome, temperatures: Sequence[float]) -> dict[str, dict[str, float]]:
+    """What each accepted cause would have been believed at other temperatures: temperature -> name -> probability."""
+    from twin.choose.weigh import Weights, weigh
+
+    said: dict[str, dict[str, float]] = {}
+    for temperature in temperatures:
+        weighed = [(d, weigh(d, Weights(temperature=temperature))) for d in outcome.result.decisions if d.explained]
+        said[f"{temperature:g}"] = {name: w.probability[name] for d, w in weighed for name in d.names}
+    return said
 
 
 def _of(decision: Decision) -> dict[str, object]:
