@@ -33,14 +33,18 @@ class DeadTime:
         return self._during(self.parts)
 
     @property
-    def queued(self) -> tuple[float, ...]:
-        """The commands on their way after that one, a whole tick each, in the order in which they arrive [psi]."""
-        return tuple(self._during(parts) for parts in range(self.parts - PARTS, -1, -PARTS))
+    def next_tick(self) -> tuple[tuple[float, float], ...]:
+        """What `arriving` stands for: the commands of that tick [psi], each with its share of it."""
+        whole, part = divmod(self.parts, PARTS)
+        late = part / PARTS
+        return ((self.sent[whole + 1], late), (self.sent[whole], 1.0 - late)) if part else ((self.sent[whole], 1.0),)
 
     @property
-    def rest(self) -> tuple[float, float]:
-        """The newest command [psi] goes on after that, for this share of a tick, until the next one acts."""
-        return self.sent[0], (self.parts % PARTS) / PARTS
+    def after_that(self) -> tuple[tuple[float, float], ...]:
+        """The commands on their way after that tick, until the next one acts, each with its share of a tick."""
+        whole, part = divmod(self.parts, PARTS)
+        whole_ticks = tuple((self.sent[newer], 1.0) for newer in range(whole - 1, -1, -1))
+        return ((self.sent[whole], part / PARTS), *whole_ticks) if part else whole_ticks
 
     def judged(self, pressure_psi: float, predict: Callable[[float], float]) -> DeadTime:
         """The hypotheses after the tick that has just ended; `predict` gives its pressure for a command."""

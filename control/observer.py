@@ -86,12 +86,12 @@ class Observer:
         `inside` is what this gave for the instant of the reading; `omega` is the bandwidth of the correction [rad/s].
         """
         keep = self.correct(inside, seen, dt_s, omega)
-        keep = self.ahead(keep, keep.line.arriving, dt_s)
+        for command_psi, share in keep.line.next_tick:
+            keep = self.ahead(keep, command_psi, share * dt_s)
         acts = keep
-        for command_psi in keep.line.queued:
-            acts = self.ahead(acts, command_psi, dt_s)
-        newest_psi, share = keep.line.rest
-        return keep, self.ahead(acts, newest_psi, share * dt_s) if share else acts
+        for command_psi, share in keep.line.after_that:
+            acts = self.ahead(acts, command_psi, share * dt_s)
+        return keep, acts
 
     def correct(self, inside: Inside, seen: Seen, dt_s: float, omega: float) -> Inside:
         """The estimate for the instant of the reading, after looking at it."""

@@ -1,9 +1,10 @@
-"""A Kalman filter through the play: stem, play output, both edges and the compliance, each with how sure it is.
+"""A Kalman filter through the play: stem, rate limit, play output, both edges, compliance, each with how sure it is.
 
 The play decides what a reading tells. While an edge pushes, play output and edge are one thing, so that a dwell after
 the move teaches the edge as well; inside the gap the play output is a constant, which a longer dwell knows better.
-Source: the extended Kalman filter; the moments of the larger of two normal variables (which edge or output it is that
-counts, while that is uncertain) are Clark's, "The greatest of a finite set of random variables", 1961.
+Which of them counts is itself uncertain at first, so that no derivative tells what a move does to the belief: points
+that stand for it go through the play instead.
+Source: cubature points, Arasaratnam and Haykin, "Cubature Kalman Filters", IEEE Transactions on Automatic Control 2009.
 """
 
 from __future__ import annotations
@@ -19,21 +20,22 @@ from control.design import DesignModel
 from control.observer import Inside, Observer
 
 FloatArray = npt.NDArray[np.float64]
-X, W, A1, A2, K = range(5)
+X, R, W, A1, A2, K = range(6)
 NOISE_IN = 0.0006
-EDGE_PSI, STIFFNESS, MOST_STIFFNESS = 0.3, 0.015, 0.1  # standard deviations of what the design may be wrong by
+EDGE_PSI, STIFFNESS, RATE, MOST = 0.3, 0.015, 0.03, 0.1  # standard deviations of what the design may be wrong by
 WALK_PSI, CREEP_IN = 0.03, 1.5e-4  # random walk of the edges per travel moved, of the play output per root second
 NOISE_PSI, STOP_IN = 0.004, 0.003
 
 
 @dataclass(frozen=True, slots=True)
 class Belief:
-    """Means in `inside` and `compliance` [in/psi]; `spread` is the covariance of (x, w, a1, a2, compliance), row by
-    row; `noise_in`, `noise_psi` the standard deviations of one reading; `doubt_psi` that of the pressure estimate;
-    `missed` by how much the last readings of position and pressure were off."""
+    """Means in `inside`, `compliance` [in/psi] and `rate_limit` [in/s]; `spread` is the covariance of (x, rate limit,
+    w, a1, a2, compliance), row by row; `noise_in`, `noise_psi` the standard deviations of one reading; `doubt_psi` that
+    of the pressure estimate; `missed` by how much the last readings of position and pressure were off."""
 
     inside: Inside
     compliance: float
+    rate_limit: float
     spread: tuple[float, ...]
     noise_in: float = NOISE_IN
     noise_psi: float = NOISE_PSI
@@ -43,11 +45,19 @@ class Belief:
     @property
     def doubt_in(self) -> float:
         """Standard deviation of the play output [in]."""
-        return math.sqrt(max(self.spread[5 * W + W], 0.0))
+        return math.sqrt(max(self.spread[6 * W + W], 0.0))
 
     def edge_psi(self, position_in: float, side: int) -> float:
         """The pressure at which the edge on this side (+1 closing, -1 opening) holds the play output there."""
         return (self.inside.a1 if side > 0 else self.inside.a2) + position_in / self.compliance
+
+    def with_edges(self, a1: float, a2: float, doubt_1_psi: float, doubt_2_psi: float) -> Belief:
+        """The same belief with these edges [psi], which have nothing to do with what the rest is believed to be."""
+        cov = _square(self.spread).copy()
+        for place, doubt_psi in ((A1, doubt_1_psi), (A2, doubt_2_psi)):
+            cov[place], cov[:, place] = 0.0, 0.0
+            cov[place, place] = doubt_psi**2
+        return replace(self, inside=replace(self.inside, a1=a1, a2=a2), spread=tuple(cov.ravel()))
 
     def edge_doubt_in(self, side: int) -> float:
         """How far off the play output may be that is put somewhere by the edge of this side [in]."""
@@ -65,40 +75,40 @@ class PlayFilter:
 
     def start(self, seen: Seen) -> Belief:
         d = self.design
-        sds = (NOISE_IN, 0.004, EDGE_PSI, EDGE_PSI, STIFFNESS * d.compliance)
-        return Belief(Observer(d).start(seen), d.compliance, tuple(np.diag(np.square(sds)).ravel()))
+        sds = (NOISE_IN, RATE * d.rate_limit, 0.004, EDGE_PSI, EDGE_PSI, STIFFNESS * d.compliance)
+        return Belief(Observer(d).start(seen), d.compliance, d.rate_limit, tuple(np.diag(np.square(sds)).ravel()))
 
     def observer(self, belief: Belief) -> Observer:
         """The design equations with the compliance as learned."""
-        return Observer(replace(self.design, compliance=belief.compliance), bias_gain=0.1)
+        return Observer(replace(self.design, compliance=belief.compliance, rate_limit=belief.rate_limit), bias_gain=0.1)
 
     def track(self, belief: Belief, seen: Seen, dt_s: float) -> tuple[Belief, Belief]:
         """The belief for the next tick, and for the instant at which the next command begins to act."""
         keep = self._correct(belief, seen, dt_s)
-        keep = self.ahead(keep, keep.inside.line.arriving, dt_s)
+        for command_psi, share in keep.inside.line.next_tick:
+            keep = self.ahead(keep, command_psi, share * dt_s)
         acts = keep
-        for command_psi in keep.inside.line.queued:
-            acts = self.ahead(acts, command_psi, dt_s)
-        newest_psi, share = keep.inside.line.rest
-        return keep, self.ahead(acts, newest_psi, share * dt_s) if share else acts
+        for command_psi, share in keep.inside.line.after_that:
+            acts = self.ahead(acts, command_psi, share * dt_s)
+        return keep, acts
 
     def _correct(self, belief: Belief, seen: Seen, dt_s: float) -> Belief:
         inside, observer = belief.inside, self.observer(belief)
         off_in, off_psi = seen.position_in - inside.x, seen.pressure_psi - inside.p
         belief = self._noise(belief, off_in, off_psi)
         p = inside.p + max(0.3, off_psi**2 / (off_psi**2 + (4.0 * belief.noise_psi) ** 2)) * off_psi
-        closing, opening = observer.contact(inside)
-        w = inside.w + (belief.compliance * (p - inside.p) if closing or opening else 0.0)
+        pushed = any(observer.contact(inside)) and not self._stopped(inside)
+        w = inside.w + (belief.compliance * (p - inside.p) if pushed else 0.0)
         inside = observer.on_stop(replace(observer.learn_converter(inside, off_psi, seen, dt_s), p=p, w=w))
         variance = 2.0 * belief.noise_in**2  # half of the noise is slow: counted double
         cov = _square(belief.spread)
-        learns = 1 if self._stopped(inside) else 5 if off_in**2 < 9.0 * (cov[X, X] + variance) else K
-        mean, cov = _updated(_mean(inside, belief.compliance), cov, _unit(X), off_in, variance, learns)
+        learns = W if self._stopped(inside) else 6 if off_in**2 < 9.0 * (cov[X, X] + variance) else K
+        mean, cov = _updated(_mean(inside, belief), cov, _unit(X), off_in, variance, learns)
         near = replace(inside, w=float(mean[W]), a1=float(mean[A1]), a2=float(mean[A2]))
         mean[W] = observer.on_stop(near).w
         mean, cov = self._consistent(mean, cov, p, belief.doubt_psi)
-        most = MOST_STIFFNESS * self.design.compliance
-        mean[K] = min(max(mean[K], self.design.compliance - most), self.design.compliance + most)
+        for place, design in ((K, self.design.compliance), (R, self.design.rate_limit)):
+            mean[place] = min(max(mean[place], (1.0 - MOST) * design), (1.0 + MOST) * design)
         return _with(belief, replace(inside, p=p), mean, cov)
 
     def _noise(self, belief: Belief, off_in: float, off_psi: float) -> Belief:
@@ -133,34 +143,57 @@ class PlayFilter:
 
     def ahead(self, belief: Belief, command_psi: float, dt_s: float) -> Belief:
         """The belief `dt_s` later with this command in force."""
-        d, before = self.design, belief.inside
-        after = self.observer(belief).ahead(before, command_psi, dt_s)
-        moved_in = abs(after.w - before.w)
-        turn = np.eye(5)
-        if abs(after.w - after.x) <= d.rate_limit * d.tau_s:
-            turn[X, X] = math.exp(-dt_s / d.tau_s) if d.tau_s > 0.0 else 0.0
-            turn[X, W] = 1.0 - turn[X, X]
-        cov, side = _square(belief.spread), 1 if after.p > before.p else -1
-        share, row = self._pushing(belief, after, side, cov)
-        turn[W] = 0.0 if self._stopped(after) else share * row + (1.0 - share) * _unit(W)
-        cov = turn @ cov @ turn.T
-        cov[W, W] += STOP_IN**2 if self._stopped(after) else 0.0
-        cov[W, W] += CREEP_IN**2 * dt_s + (belief.compliance * belief.doubt_psi * share) ** 2 * (moved_in > 1e-4)
-        cov[X, X] += (0.1 * (after.x - before.x)) ** 2
+        d, before, cov = self.design, belief.inside, _square(belief.spread)
+        if self._stopped(before):
+            cov[W], cov[:, W] = 0.0, 0.0
+        points = _points(_mean(before, belief), cov)
+        after = self._moved(points, before, command_psi, dt_s)
+        mean = points.mean(axis=1)
+        apart = points - mean[:, None]
+        cov = apart @ apart.T / points.shape[1]
+        pushed_psi = abs(after.p - before.p)
+        moved_in = abs(float(mean[W]) - before.w)
+        share = min(moved_in / (belief.compliance * pushed_psi), 1.0) if pushed_psi > 0.002 else 0.0
+        after = replace(after, x=float(mean[X]), w=float(mean[W]))
+        if min(mean[W], d.travel - mean[W]) < 1e-6:
+            after = replace(after, w=0.0 if mean[W] < 0.5 * d.travel else d.travel)
+            cov[W, W] += STOP_IN**2
+        cov[W, W] += CREEP_IN**2 * dt_s + (belief.compliance * belief.doubt_psi * share) ** 2
+        cov[X, X] += (0.03 * (after.x - before.x)) ** 2
         cov[A1, A1] += WALK_PSI**2 * moved_in / d.travel
         cov[A2, A2] += WALK_PSI**2 * moved_in / d.travel
         return replace(belief, inside=after, spread=tuple(cov.ravel()))
 
-    def _pushing(self, belief: Belief, after: Inside, side: int, cov: FloatArray) -> tuple[float, FloatArray]:
-        """The chance that the edge of this side pushes the play output now, and what that is then made of."""
-        edge = after.a1 if side > 0 else after.a2
-        row = _row(edge=A1 if side > 0 else A2, slope=-belief.compliance, lever=after.p - edge)
-        if side * (after.p - belief.inside.p) < 0.002:
-            return 0.0, row
-        apart = row - _unit(W)
-        spread_in = math.sqrt(max(float(apart @ cov @ apart), 1e-12))
-        ahead_in = side * (belief.compliance * (after.p - edge) - belief.inside.w)
-        return 0.5 * math.erfc(-ahead_in / spread_in / math.sqrt(2.0)), row
+    def _moved(self, points: FloatArray, inside: Inside, command_psi: float, dt_s: float) -> Inside:
+        """Moves all points, in place; the pressure is the same for all."""
+        d, (x, rate, w, a1, a2, k) = self.design, points
+        parts = max(math.ceil(dt_s / 0.03 - 1e-9), 1)
+        part_s = dt_s / parts
+        share = 1.0 - math.exp(-part_s / d.ep_tau_s) if d.ep_tau_s > 0.0 else 1.0
+        p, settles = inside.p, inside.settles(command_psi)
+        for _ in range(parts):
+            p += share * (settles - p)
+            w_next = np.clip(np.maximum(k * (p - a1), np.minimum(k * (p - a2), w)), 0.0, d.travel)
+            x[:] = _follow(x, 0.5 * (w + w_next), d.tau_s, rate, part_s)
+            w[:] = w_next
+        return replace(inside.turned(command_psi), p=p)
+
+
+def _points(mean: FloatArray, cov: FloatArray) -> FloatArray:
+    """Twelve points, shape (6, 12), with this mean and covariance."""
+    values, vectors = np.linalg.eigh(cov)
+    root = vectors * np.sqrt(6.0 * np.maximum(values, 0.0))
+    points: FloatArray = mean[:, None] + np.hstack([root, -root])
+    return points
+
+
+def _follow(x: FloatArray, w: FloatArray, tau_s: float, rate: FloatArray, dt_s: float) -> FloatArray:
+    """The rate-limited lag of `observer.follow`, for many."""
+    gap = w - x
+    straight_s = np.clip((np.abs(gap) / rate - tau_s), 0.0, dt_s)
+    x = x + np.copysign(rate * straight_s, gap)
+    moved: FloatArray = w - (w - x) * np.exp(-(dt_s - straight_s) / tau_s) if tau_s > 0.0 else w
+    return moved
 
 
 def _updated(
@@ -171,32 +204,32 @@ def _updated(
     toward = cov @ h
     gain = toward / (float(h @ toward) + variance)
     gain[learns:] = 0.0
-    keep = np.eye(5) - np.outer(gain, h)
+    keep = np.eye(6) - np.outer(gain, h)
     return mean + gain * off, keep @ cov @ keep.T + variance * np.outer(gain, gain)
 
 
 def _row(edge: int, slope: float, lever: float) -> FloatArray:
     """The derivative of compliance (p - edge) by the five."""
-    row = np.zeros(5)
+    row = np.zeros(6)
     row[edge], row[K] = slope, lever
     return row
 
 
 def _unit(place: int) -> FloatArray:
-    row = np.zeros(5)
+    row = np.zeros(6)
     row[place] = 1.0
     return row
 
 
 def _square(spread: tuple[float, ...]) -> FloatArray:
-    return np.array(spread).reshape(5, 5)
+    return np.array(spread).reshape(6, 6)
 
 
-def _mean(inside: Inside, compliance: float) -> FloatArray:
-    return np.array([inside.x, inside.w, inside.a1, inside.a2, compliance])
+def _mean(inside: Inside, belief: Belief) -> FloatArray:
+    return np.array([inside.x, belief.rate_limit, inside.w, inside.a1, inside.a2, belief.compliance])
 
 
 def _with(belief: Belief, inside: Inside, mean: FloatArray, cov: FloatArray) -> Belief:
-    x, w, a1, a2, compliance = (float(value) for value in mean)
+    x, rate_limit, w, a1, a2, compliance = (float(value) for value in mean)
     inside = replace(inside, x=x, w=w, a1=a1, a2=a2)
-    return replace(belief, inside=inside, compliance=compliance, spread=tuple(cov.ravel()))
+    return replace(belief, inside=inside, compliance=compliance, rate_limit=rate_limit, spread=tuple(cov.ravel()))

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 from control.controller import Law, Seen
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
+
+GIVEN_UP = 99  # turns after which a target is left alone
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,7 +25,9 @@ class Found:
 @dataclass(frozen=True, slots=True)
 class BrakeState:
     """The belief for the next reading; `drive` is +1 closing, -1 opening, 0 settling; the aim [psi], and for how long
-    it has not changed [s]; whether the valve sticks; how often it has been turned back or stroked for this target."""
+    it has not changed [s]; what is remembered of the edges; whether the valve sticks; how often it has been turned back
+    or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how long the drive
+    has lasted [s]."""
 
     belief: Belief
     target_in: float
@@ -33,6 +37,9 @@ class BrakeState:
     found: Found | None = None
     sticks: bool = False
     turns: int = 0
+    pushing: bool = False
+    pushes: int = 0
+    driven_s: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -45,7 +52,9 @@ class Brake(Law[BrakeState]):
     of what is known; then the pressure retreats by `retreat_psi` from the edge, where noise, drift of the converter and
     small leaks move nothing. Sticking: where the pressure has gone `grip_psi` and `surely` standard deviations beyond
     an edge and nothing has moved, small pushes are given up; from then on every correction is a stroke of `stroke_psi`
-    beyond the edge and back, which slides from start to end. Each time of turning back makes it more tolerant.
+    beyond the edge and back, which slides from start to end; at most `strokes` per target, and none that takes longer
+    than `stroke_s`: what is left then, friction does not permit to take away. Each time of turning back makes it more
+    tolerant.
     """
 
     tolerance_in: float = 0.0007
@@ -55,33 +64,47 @@ class Brake(Law[BrakeState]):
     short_in: float = 0.0005
     patience_s: float = 3.0
     retreat_psi: float = 0.4
-    grip_psi: float = 0.03
+    grip_psi: float = 0.04
     surely: float = 2.5
     stroke_psi: float = 0.45
+    strokes: float = 3.0
+    stroke_s: float = 1.5
 
     def start(self, seen: Seen, target_in: float) -> BrakeState:
         return BrakeState(self._filter.start(seen), seen.position_in, seen.commanded_psi)
 
     def law(self, state: BrakeState, seen: Seen, target_in: float, dt_s: float) -> tuple[BrakeState, float]:
         keep, soon = self._filter.track(state.belief, seen, dt_s)
-        fresh = abs(target_in - state.target_in) > 1e-4
-        state = self._gripped(replace(state, turns=0) if fresh else state, soon)
-        drive, turns = self._begun(state, soon, target_in, fresh), state.turns
-        found, aim_psi = state.found, state.aim_psi
-        if drive:
-            turns += 1 if not (state.drive or fresh) else 0
-            least = state.sticks and not state.drive
-            aim_psi, drive = self._driven(soon, target_in, drive, dt_s, least)
-            found = None if drive else _found(soon)
-        elif self._is_stop(target_in):
-            aim_psi, found = self._stop_psi(soon, target_in, aim_psi), None
-        else:
-            side = 0 if state.sticks else self._pushed(soon, target_in, turns)
-            turns += 1 if side and not self._touches(soon, side) else 0
-            aim_psi = self._push_psi(soon, target_in, side) if side else self._parked(state, soon)
-        quiet_s = state.quiet_s + dt_s if aim_psi == state.aim_psi else 0.0
-        after = BrakeState(keep, target_in, aim_psi, drive, quiet_s, found, state.sticks, turns)
-        return after, self._command_psi(soon.inside, aim_psi, dt_s)
+        fresh, before_psi = abs(target_in - state.target_in) > 1e-4, state.aim_psi
+        state = replace(state, belief=keep, target_in=target_in)
+        state, soon = self._gripped(replace(state, turns=0, pushes=0) if fresh else state, soon)
+        drive = self._begun(state, soon, fresh)
+        after = self._driving(state, soon, drive, fresh, dt_s) if drive else self._settling(state, soon)
+        quiet_s = state.quiet_s + dt_s if after.aim_psi == before_psi else 0.0
+        driven_s = state.driven_s + dt_s if after.drive else 0.0
+        return replace(after, quiet_s=quiet_s, driven_s=driven_s), self._command_psi(soon.inside, after.aim_psi, dt_s)
+
+    def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
+        turns = state.turns + (0 if state.drive or fresh else 1)
+        stroke = state.sticks and turns > 0
+        aim_psi, drive = self._driven(soon, state.target_in, drive, dt_s, stroke and not state.drive)
+        after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False)
+        if stroke and state.driven_s > self.stroke_s:  # nothing moves: what it seemed to teach is forgotten
+            return replace(after, drive=0, turns=GIVEN_UP, belief=_with_edges(state.belief, state.found))
+        return replace(after, found=_found(soon) if not drive else state.found if stroke else None)
+
+    def _settling(self, state: BrakeState, soon: Belief) -> BrakeState:
+        target_in, pushes, was_pushing = state.target_in, state.pushes, state.pushing
+        state = replace(state, drive=0, pushing=False)
+        if self._is_stop(target_in):
+            return replace(state, aim_psi=self._stop_psi(soon, target_in, state.aim_psi), found=None)
+        side = 0 if state.sticks else self._pushed(soon, target_in, state.turns)
+        if not side:
+            return replace(state, aim_psi=self._parked(state, soon))
+        pushes = side if side * pushes < 0 else pushes + side * (not was_pushing)
+        turns = state.turns + (0 if self._touches(soon, side) else 1)
+        aim_psi = self._push_psi(soon, target_in, side, abs(pushes))
+        return replace(state, aim_psi=aim_psi, pushing=True, pushes=pushes, turns=turns)
 
     @property
     def _filter(self) -> PlayFilter:
@@ -96,31 +119,37 @@ class Brake(Law[BrakeState]):
     def _allowed_in(self, soon: Belief, turns: int) -> float:
         return self.tolerance_in * min(1.0 + 0.25 * max(turns - 2, 0), 1.6) + self.sure * soon.doubt_in
 
-    def _gripped(self, state: BrakeState, soon: Belief) -> BrakeState:
-        """Notices that the valve sticks, and notes the edges whenever they are known better than before."""
+    def _gripped(self, state: BrakeState, soon: Belief) -> tuple[BrakeState, Belief]:
+        """Notices that the valve sticks, and forgets what was learned by pushing in vain; notes the edges whenever they
+        are known better than before."""
         if state.sticks or state.drive or state.found is None:
-            return state
+            return state, soon
         rest_psi, was = soon.inside.w / soon.compliance, state.found
         closing_psi = soon.inside.p - was.a1 - rest_psi - self.surely * was.doubt_1
         opening_psi = was.a2 + rest_psi - soon.inside.p - self.surely * was.doubt_2
-        if max(closing_psi, opening_psi) > self.grip_psi:
-            return replace(state, sticks=True)
+        if max(closing_psi, opening_psi) > max(self.grip_psi, 7.0 * soon.noise_psi):
+            belief = _with_edges(state.belief, was)
+            return replace(state, sticks=True, turns=0, belief=belief), _with_edges(soon, was)
         now = _found(soon)
         better = now.doubt_1 + now.doubt_2 < 0.5 * (was.doubt_1 + was.doubt_2)
-        return replace(state, found=now) if better and state.quiet_s > 1.5 else state
+        calm = state.quiet_s > 1.5 and abs(state.pushes) < 2
+        return (replace(state, found=now) if better and calm else state), soon
 
-    def _begun(self, state: BrakeState, soon: Belief, target_in: float, fresh: bool) -> int:
+    def _begun(self, state: BrakeState, soon: Belief, fresh: bool) -> int:
         """The way to drive, 0 for none: to a new target, back to one that was missed, or as a stroke."""
+        target_in = state.target_in
         if self._is_stop(target_in) or state.drive:
             return 0 if self._is_stop(target_in) else state.drive
         miss_in, off_in = target_in - soon.inside.x, target_in - soon.inside.w
-        way = 1 if miss_in > 0.0 else -1
+        way = _sign(miss_in)
         if fresh:
             return way if abs(miss_in) > self.band_in else 0
-        if abs(miss_in) > self.again_in and way * off_in > self.again_in + 2.0 * soon.doubt_in:
+        far = abs(miss_in) > self.again_in and way * off_in > self.again_in + 2.0 * soon.doubt_in
+        if far and state.turns < GIVEN_UP:
             return way
-        stroke = state.sticks and state.quiet_s > self.patience_s
-        return _sign(off_in) if stroke and abs(off_in) > self._allowed_in(soon, state.turns) else 0
+        enough_in = 0.5 * self.tolerance_in + self._allowed_in(soon, 0)
+        stroke = state.sticks and state.quiet_s > self.patience_s and state.turns < self.strokes
+        return _sign(off_in) if stroke and abs(off_in) > enough_in else 0
 
     def _driven(self, soon: Belief, target_in: float, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
         """The aim of the next tick [psi], and whether the drive goes on after it."""
@@ -161,9 +190,13 @@ class Brake(Law[BrakeState]):
         miss_in = target_in - soon.inside.w
         return _sign(miss_in) if abs(miss_in) > self._allowed_in(soon, turns) else 0
 
-    def _push_psi(self, soon: Belief, target_in: float, side: int) -> float:
-        """To the edge; through the deadband a little short of it, because pushing on is cheaper than turning back."""
-        short_in = 0.0 if self._touches(soon, side) else self.short_in + min(soon.edge_doubt_in(side), 0.01)
+    def _push_psi(self, soon: Belief, target_in: float, side: int, count: int) -> float:
+        """To the edge; through the deadband a little short of it, because pushing on is cheaper than turning back. What
+        has to be pushed the same way again was not at the edge: it gets more than is thought to be missing."""
+        if self._touches(soon, side):
+            short_in = -min(count - 1, 2) * abs(target_in - soon.inside.w)
+        else:
+            short_in = self.short_in + min(soon.edge_doubt_in(side), 0.01)
         return soon.edge_psi(target_in - side * short_in, side)
 
     def _parked(self, state: BrakeState, soon: Belief) -> float:
@@ -194,6 +227,10 @@ class Brake(Law[BrakeState]):
 def _found(soon: Belief) -> Found:
     doubts = (soon.edge_doubt_in(side) / soon.compliance for side in (1, -1))
     return Found(soon.inside.a1, soon.inside.a2, *doubts)
+
+
+def _with_edges(belief: Belief, found: Found | None) -> Belief:
+    return belief if found is None else belief.with_edges(*astuple(found))
 
 
 def _sign(value: float) -> int:

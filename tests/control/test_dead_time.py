@@ -23,7 +23,8 @@ def test_whole_ticks_are_found_from_a_few_steps(true_ticks: int) -> None:
         sent = [command, *sent[:-1]]
     assert line.ticks == true_ticks
     assert line.arriving == sent[true_ticks]
-    assert line.queued == tuple(reversed(sent[:true_ticks]))
+    assert line.next_tick == ((sent[true_ticks], 1.0),)
+    assert line.after_that == tuple((command, 1.0) for command in reversed(sent[:true_ticks]))
 
 
 def test_parts_of_a_tick_are_found_too() -> None:
@@ -38,8 +39,8 @@ def test_parts_of_a_tick_are_found_too() -> None:
         line = line.judged(pressure, lambda u, p=before: p + SHARE * (u - p)).and_sent(command)
         sent = [command, *sent[:-1]]
     assert line.ticks == 1.5
-    assert line.rest == (sent[0], 0.5)
-    assert len(line.queued) == 1
+    assert line.next_tick == ((sent[2], 0.5), (sent[1], 0.5))
+    assert line.after_that == ((sent[1], 0.5), (sent[0], 1.0))
 
 
 def test_noise_alone_finds_none() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from app.physics_bench import open_virtual
@@ -16,13 +17,17 @@ DESIGN = DesignModel()
 TICK_S = 0.1
 STAIRS = np.repeat([10.5, 8.4, 11.2, 7.4, 10.8, 8.0], 250)
 
+RUNS = np.repeat([14.0, 2.0, 14.0, 2.0], 80)  # from stop to stop
 
-def watch(seed: int, noise: float = 1.0, **numbers: float) -> tuple[Belief, Mapping[str, float]]:
+
+def watch(
+    seed: int, noise: float = 1.0, stairs: npt.NDArray[np.float64] = STAIRS, **numbers: float
+) -> tuple[Belief, Mapping[str, float]]:
     """The belief after going up and down a few times, and the truth: stem and plate."""
     opened = open_virtual(seed, numbers=numbers, noise=noise)
     watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
     belief = watcher.start(seen(sample))
-    for tick, command_psi in enumerate(STAIRS):
+    for tick, command_psi in enumerate(stairs):
         belief, _ = watcher.track(belief, seen(sample), TICK_S)
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(float(command_psi))
@@ -57,6 +62,19 @@ def test_the_noise_is_measured() -> None:
     assert watch(2, noise=4.0)[0].noise_in == pytest.approx(0.0024, rel=0.35)
 
 
+@pytest.mark.parametrize("rate_limit", [0.115, 0.125])
+def test_the_rate_limit_is_learned(rate_limit: float) -> None:
+    assert watch(3, stairs=RUNS, rate_limit=rate_limit)[0].rate_limit == pytest.approx(rate_limit, rel=0.015)
+
+
+def test_new_edges_have_nothing_to_do_with_the_rest() -> None:
+    belief, _ = watch(1)
+    moved = belief.with_edges(9.0, 5.5, 0.02, 0.03)
+    assert (moved.inside.a1, moved.inside.a2) == (9.0, 5.5)
+    assert moved.edge_doubt_in(1) == pytest.approx(0.02 * belief.compliance, rel=0.2)
+    assert moved.doubt_in == belief.doubt_in
+
+
 def test_a_rest_on_a_stop_teaches_nothing() -> None:
     opened = open_virtual(0)
     watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
@@ -66,4 +84,4 @@ def test_a_rest_on_a_stop_teaches_nothing() -> None:
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(2.0)
     assert (belief.inside.a1, belief.inside.a2) == (first.inside.a1, first.inside.a2)
-    assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(5, 5)) > -1e-12)
+    assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(6, 6)) > -1e-12)
