@@ -10,9 +10,7 @@ import numpy as np
 from control.design import DesignModel
 from control.scenarios import TRAVEL_IN, Scenario, Segment
 
-FIRST_SEED = (
-    5000  # tuned on seeds below 10 as named; draws 1000 to 1005 and 3000 to 3007 have shown faults, mended since
-)
+FIRST_SEED = 7000  # below it, draws were tuned on, or looked at and what failed there was mended
 
 
 def held_out(scenario: Scenario, seed: int) -> Scenario:

@@ -1,4 +1,4 @@
-"""A Kalman filter through the play: stem, rate limit, play output, both edges, compliance, each with how sure it is.
+"""A Kalman filter through the play: stem, play output, edges and three design numbers, each with how sure it is.
 
 The play decides what a reading tells. While an edge pushes, play output and edge are one thing, so that a dwell after
 the move teaches the edge as well; inside the gap the play output is a constant, which a longer dwell knows better.
@@ -20,22 +20,26 @@ from control.design import DesignModel
 from control.observer import Inside, Observer
 
 FloatArray = npt.NDArray[np.float64]
-X, R, W, A1, A2, K = range(6)
+X, R, T, W, A1, A2, K = range(7)
+SIZE = 7
 NOISE_IN = 0.0006
-EDGE_PSI, STIFFNESS, RATE, MOST = 0.3, 0.015, 0.03, 0.1  # standard deviations of what the design may be wrong by
+# standard deviations of what the design may be wrong by: edges [psi], three numbers as shares; and these at the most
+EDGE_PSI, STIFFNESS, RATE, TRAVEL, MOST = 0.3, 0.015, 0.03, 0.02, 0.1
 WALK_PSI, CREEP_IN = 0.03, 1.5e-4  # random walk of the edges per travel moved, of the play output per root second
 NOISE_PSI, STOP_IN = 0.004, 0.003
 
 
 @dataclass(frozen=True, slots=True)
 class Belief:
-    """Means in `inside`, `compliance` [in/psi] and `rate_limit` [in/s]; `spread` is the covariance of (x, rate limit,
-    w, a1, a2, compliance), row by row; `noise_in`, `noise_psi` the standard deviations of one reading; `doubt_psi` that
-    of the pressure estimate; `missed` by how much the last readings of position and pressure were off."""
+    """Means in `inside`, `compliance` [in/psi], `rate_limit` [in/s] and `travel`, where the play output stops [in];
+    `spread` is the covariance of (x, rate limit, travel, w, a1, a2, compliance), row by row; `noise_in`, `noise_psi`
+    the standard deviations of one reading; `doubt_psi` that of the pressure estimate; `missed` by how much the last
+    readings of position and pressure were off."""
 
     inside: Inside
     compliance: float
     rate_limit: float
+    travel: float
     spread: tuple[float, ...]
     noise_in: float = NOISE_IN
     noise_psi: float = NOISE_PSI
@@ -45,7 +49,7 @@ class Belief:
     @property
     def doubt_in(self) -> float:
         """Standard deviation of the play output [in]."""
-        return math.sqrt(max(self.spread[6 * W + W], 0.0))
+        return math.sqrt(max(self.spread[SIZE * W + W], 0.0))
 
     def edge_psi(self, position_in: float, side: int) -> float:
         """The pressure at which the edge on this side (+1 closing, -1 opening) holds the play output there."""
@@ -75,12 +79,14 @@ class PlayFilter:
 
     def start(self, seen: Seen) -> Belief:
         d = self.design
-        sds = (NOISE_IN, RATE * d.rate_limit, 0.004, EDGE_PSI, EDGE_PSI, STIFFNESS * d.compliance)
-        return Belief(Observer(d).start(seen), d.compliance, d.rate_limit, tuple(np.diag(np.square(sds)).ravel()))
+        sds = (NOISE_IN, RATE * d.rate_limit, TRAVEL * d.travel, 0.004, EDGE_PSI, EDGE_PSI, STIFFNESS * d.compliance)
+        spread = tuple(np.diag(np.square(sds)).ravel())
+        return Belief(Observer(d).start(seen), d.compliance, d.rate_limit, d.travel, spread)
 
     def observer(self, belief: Belief) -> Observer:
-        """The design equations with the compliance as learned."""
-        return Observer(replace(self.design, compliance=belief.compliance, rate_limit=belief.rate_limit), bias_gain=0.1)
+        """The design equations with compliance, rate limit and travel as learned."""
+        learned = replace(self.design, compliance=belief.compliance, rate_limit=belief.rate_limit, travel=belief.travel)
+        return Observer(learned, bias_gain=0.1)
 
     def track(self, belief: Belief, seen: Seen, dt_s: float) -> tuple[Belief, Belief]:
         """The belief for the next tick, and for the instant at which the next command begins to act."""
@@ -97,17 +103,19 @@ class PlayFilter:
         off_in, off_psi = seen.position_in - inside.x, seen.pressure_psi - inside.p
         belief = self._noise(belief, off_in, off_psi)
         p = inside.p + max(0.3, off_psi**2 / (off_psi**2 + (4.0 * belief.noise_psi) ** 2)) * off_psi
-        pushed = any(observer.contact(inside)) and not self._stopped(inside)
+        pushed = any(observer.contact(inside)) and not _stopped(belief, inside)
         w = inside.w + (belief.compliance * (p - inside.p) if pushed else 0.0)
         inside = observer.on_stop(replace(observer.learn_converter(inside, off_psi, seen, dt_s), p=p, w=w))
         variance = 2.0 * belief.noise_in**2  # half of the noise is slow: counted double
         cov = _square(belief.spread)
-        learns = W if self._stopped(inside) else 6 if off_in**2 < 9.0 * (cov[X, X] + variance) else K
+        learns = W if _stopped(belief, inside) else SIZE if off_in**2 < 9.0 * (cov[X, X] + variance) else K
         mean, cov = _updated(_mean(inside, belief), cov, _unit(X), off_in, variance, learns)
         near = replace(inside, w=float(mean[W]), a1=float(mean[A1]), a2=float(mean[A2]))
-        mean[W] = observer.on_stop(near).w
+        w = observer.on_stop(near).w
+        mean[W] = mean[T] if w >= belief.travel - 1e-9 else min(w, mean[T])
         mean, cov = self._consistent(mean, cov, p, belief.doubt_psi)
-        for place, design in ((K, self.design.compliance), (R, self.design.rate_limit)):
+        d = self.design
+        for place, design in ((K, d.compliance), (R, d.rate_limit), (T, d.travel)):
             mean[place] = min(max(mean[place], (1.0 - MOST) * design), (1.0 + MOST) * design)
         return _with(belief, replace(inside, p=p), mean, cov)
 
@@ -126,14 +134,11 @@ class PlayFilter:
             missed=(off_in, off_psi),
         )
 
-    def _stopped(self, inside: Inside) -> bool:
-        return inside.w <= 0.0 or inside.w >= self.design.travel
-
     def _consistent(
         self, mean: FloatArray, cov: FloatArray, p: float, doubt_psi: float
     ) -> tuple[FloatArray, FloatArray]:
         """The play output inside the gap: where it is not, it and the edge give way, the less sure one more."""
-        if 0.0 < mean[W] < self.design.travel:
+        if 0.0 < mean[W] < mean[T] - 1e-9:
             for a, side in ((A1, 1.0), (A2, -1.0)):
                 beyond = side * (mean[K] * (p - mean[a]) - mean[W])
                 if beyond > 0.0:
@@ -144,8 +149,10 @@ class PlayFilter:
     def ahead(self, belief: Belief, command_psi: float, dt_s: float) -> Belief:
         """The belief `dt_s` later with this command in force."""
         d, before, cov = self.design, belief.inside, _square(belief.spread)
-        if self._stopped(before):
-            cov[W], cov[:, W] = 0.0, 0.0
+        if _stopped(belief, before):  # the play output is the stop, as sure as that is
+            share = 1.0 if before.w > 0.0 else 0.0
+            cov[W], cov[:, W] = share * cov[T], share * cov[:, T]
+            cov[W, W] = share * cov[T, T]
         points = _points(_mean(before, belief), cov)
         after = self._moved(points, before, command_psi, dt_s)
         mean = points.mean(axis=1)
@@ -155,8 +162,8 @@ class PlayFilter:
         moved_in = abs(float(mean[W]) - before.w)
         share = min(moved_in / (belief.compliance * pushed_psi), 1.0) if pushed_psi > 0.002 else 0.0
         after = replace(after, x=float(mean[X]), w=float(mean[W]))
-        if min(mean[W], d.travel - mean[W]) < 1e-6:
-            after = replace(after, w=0.0 if mean[W] < 0.5 * d.travel else d.travel)
+        if min(mean[W], belief.travel - mean[W]) < 1e-6:
+            after = replace(after, w=0.0 if mean[W] < 0.5 * belief.travel else belief.travel)
             cov[W, W] += STOP_IN**2
         cov[W, W] += CREEP_IN**2 * dt_s + (belief.compliance * belief.doubt_psi * share) ** 2
         cov[X, X] += (0.03 * (after.x - before.x)) ** 2
@@ -166,23 +173,23 @@ class PlayFilter:
 
     def _moved(self, points: FloatArray, inside: Inside, command_psi: float, dt_s: float) -> Inside:
         """Moves all points, in place; the pressure is the same for all."""
-        d, (x, rate, w, a1, a2, k) = self.design, points
+        d, (x, rate, travel, w, a1, a2, k) = self.design, points
         parts = max(math.ceil(dt_s / 0.03 - 1e-9), 1)
         part_s = dt_s / parts
         share = 1.0 - math.exp(-part_s / d.ep_tau_s) if d.ep_tau_s > 0.0 else 1.0
         p, settles = inside.p, inside.settles(command_psi)
         for _ in range(parts):
             p += share * (settles - p)
-            w_next = np.clip(np.maximum(k * (p - a1), np.minimum(k * (p - a2), w)), 0.0, d.travel)
+            w_next = np.clip(np.maximum(k * (p - a1), np.minimum(k * (p - a2), w)), 0.0, travel)
             x[:] = _follow(x, 0.5 * (w + w_next), d.tau_s, rate, part_s)
             w[:] = w_next
         return replace(inside.turned(command_psi), p=p)
 
 
 def _points(mean: FloatArray, cov: FloatArray) -> FloatArray:
-    """Twelve points, shape (6, 12), with this mean and covariance."""
+    """Fourteen points, shape (7, 14), with this mean and covariance."""
     values, vectors = np.linalg.eigh(cov)
-    root = vectors * np.sqrt(6.0 * np.maximum(values, 0.0))
+    root = vectors * np.sqrt(SIZE * np.maximum(values, 0.0))
     points: FloatArray = mean[:, None] + np.hstack([root, -root])
     return points
 
@@ -204,32 +211,36 @@ def _updated(
     toward = cov @ h
     gain = toward / (float(h @ toward) + variance)
     gain[learns:] = 0.0
-    keep = np.eye(6) - np.outer(gain, h)
+    keep = np.eye(SIZE) - np.outer(gain, h)
     return mean + gain * off, keep @ cov @ keep.T + variance * np.outer(gain, gain)
 
 
 def _row(edge: int, slope: float, lever: float) -> FloatArray:
     """The derivative of compliance (p - edge) by the five."""
-    row = np.zeros(6)
+    row = np.zeros(SIZE)
     row[edge], row[K] = slope, lever
     return row
 
 
 def _unit(place: int) -> FloatArray:
-    row = np.zeros(6)
+    row = np.zeros(SIZE)
     row[place] = 1.0
     return row
 
 
 def _square(spread: tuple[float, ...]) -> FloatArray:
-    return np.array(spread).reshape(6, 6)
+    return np.array(spread).reshape(SIZE, SIZE)
 
 
 def _mean(inside: Inside, belief: Belief) -> FloatArray:
-    return np.array([inside.x, belief.rate_limit, inside.w, inside.a1, inside.a2, belief.compliance])
+    return np.array([inside.x, belief.rate_limit, belief.travel, inside.w, inside.a1, inside.a2, belief.compliance])
 
 
 def _with(belief: Belief, inside: Inside, mean: FloatArray, cov: FloatArray) -> Belief:
-    x, rate_limit, w, a1, a2, compliance = (float(value) for value in mean)
-    inside = replace(inside, x=x, w=w, a1=a1, a2=a2)
-    return replace(belief, inside=inside, compliance=compliance, rate_limit=rate_limit, spread=tuple(cov.ravel()))
+    x, rate_limit, travel, w, a1, a2, compliance = (float(value) for value in mean)
+    inside, learned = replace(inside, x=x, w=w, a1=a1, a2=a2), tuple(cov.ravel())
+    return replace(belief, inside=inside, compliance=compliance, rate_limit=rate_limit, travel=travel, spread=learned)
+
+
+def _stopped(belief: Belief, inside: Inside) -> bool:
+    return inside.w <= 0.0 or inside.w >= belief.travel - 1e-9

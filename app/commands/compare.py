@@ -33,7 +33,7 @@ COLUMNS = (
 @click.option("--controllers", "-c", default="", help="Names with commas between.  [default: all]")
 @click.option("--scenarios", "-s", default="", help="Names with commas between.  [default: all]")
 @click.option("--seeds", type=click.IntRange(1), default=2, show_default=True, help="Repeats with other chance.")
-@click.option("--first-seed", type=click.IntRange(0), help="Where they begin.  [default: 0, with --held-out 1000]")
+@click.option("--first-seed", type=click.IntRange(0), help="Where they begin.  [default: 0, with --held-out 7000]")
 @click.option("--held-out", is_flag=True, help="Other sizes and targets than those the controllers were tuned on.")
 @click.option("--period", type=click.FloatRange(0.02, 0.5), default=0.1, show_default=True, help="Tick [s].")
 @click.option("--design", type=click.Path(path_type=Path, dir_okay=False), help="What the controllers know (TOML).")

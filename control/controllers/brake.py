@@ -117,7 +117,7 @@ class Brake(Law[BrakeState]):
         return self._filter.observer(soon).contact(soon.inside)[0 if side > 0 else 1]
 
     def _allowed_in(self, soon: Belief, turns: int) -> float:
-        return self.tolerance_in * min(1.0 + 0.25 * max(turns - 2, 0), 1.6) + self.sure * soon.doubt_in
+        return (self.tolerance_in + self.sure * soon.doubt_in) * min(1.0 + 0.2 * max(turns - 2, 0), 1.6)
 
     def _gripped(self, state: BrakeState, soon: Belief) -> tuple[BrakeState, Belief]:
         """Notices that the valve sticks, and forgets what was learned by pushing in vain; notes the edges whenever they

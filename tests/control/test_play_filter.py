@@ -67,6 +67,11 @@ def test_the_rate_limit_is_learned(rate_limit: float) -> None:
     assert watch(3, stairs=RUNS, rate_limit=rate_limit)[0].rate_limit == pytest.approx(rate_limit, rel=0.015)
 
 
+@pytest.mark.parametrize("travel", [0.553, 0.572])
+def test_the_upper_stop_is_learned(travel: float) -> None:
+    assert watch(3, stairs=RUNS, travel=travel)[0].travel == pytest.approx(travel, rel=0.003)
+
+
 def test_new_edges_have_nothing_to_do_with_the_rest() -> None:
     belief, _ = watch(1)
     moved = belief.with_edges(9.0, 5.5, 0.02, 0.03)
@@ -84,4 +89,4 @@ def test_a_rest_on_a_stop_teaches_nothing() -> None:
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(2.0)
     assert (belief.inside.a1, belief.inside.a2) == (first.inside.a1, first.inside.a2)
-    assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(6, 6)) > -1e-12)
+    assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(7, 7)) > -1e-12)
