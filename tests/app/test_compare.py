@@ -16,6 +16,7 @@ from app.physics_bench import open_virtual
 from app.session import open_bench
 from control.controller import make_controller
 from control.design import DesignModel, save_design
+from control.held_out import FIRST_SEED
 from control.trial import Opened, follow_targets, run_trial
 from hal.errors import BadInput
 
@@ -50,7 +51,7 @@ def test_compare_says_which_seeds() -> None:
         CliRunner().invoke(compare, [*common, *more], catch_exceptions=False) for more in ([], ["--held-out"])
     )
     assert "seeds 0 to 0, sizes and targets as the scenarios name them" in named.stdout
-    assert "seeds 5000 to 5000, sizes and targets drawn, held out" in drawn.stdout
+    assert f"seeds {FIRST_SEED} to {FIRST_SEED}, sizes and targets drawn, held out" in drawn.stdout
 
 
 def test_compare_prints_a_table_and_a_picture(tmp_path: Path) -> None:
