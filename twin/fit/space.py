@@ -24,7 +24,7 @@ ACCUSED_SPREAD = 0.5
 #: ... and of one that an effect of the hypothesis gives another meaning.
 ABSORBED_SPREAD = 0.1
 #: Relative move of a design number beside an effect, far beyond its prior, from which it is suspected itself.
-SHIFTED = 0.06
+SHIFTED = 0.1
 REFERENCE = Scales()
 
 
