@@ -28,6 +28,7 @@ from app.blind.designs import baseline, margin
 from app.blind.excite import commands, open_loop
 from app.blind.features import decision_features, tempered
 from app.blind.mark import mark
+from app.blind.sizes import check_sizes
 from app.blind.strength import stratum, strength
 from logs.recording import Recording
 from sim_device.physics.catalog import imperfections, make_physics, parameters
@@ -118,10 +119,12 @@ def solve(number: int, label: Label, share: float = 1.0) -> dict[str, object]:
         "label": asdict(label),
         "family": label.family,
         "ratio": force.ratio,
+        "weakest": force.weakest,
         "stratum": stratum(force.ratio),
         **kept,
         "where_stage": said["where"]["stage"],  # type: ignore[index]
         "mark": asdict(mark(label, said)),
+        "sizes": [asdict(check) for check in check_sizes(label, said, design)],
         "features": decision_features(outcome),
         "tempered": tempered(outcome, TEMPERATURES),
         "seconds": round(seconds, 2),

@@ -50,9 +50,15 @@ def _of(decision: Decision) -> dict[str, object]:
         "score": own,
         "score_none": findings.score(findings.none),
         "score_gap_to_rival": own - rivals[0] if rivals else None,
+        "without": {name: _line(*_without(ranked, name)) for name in accepted.names},
         "best": [_line(fit, score) for score, fit in ranked[:_KEPT]],
         "best_by_size": [_line(fit, findings.score(fit)) for fit in _by_size(findings)],
     }
+
+
+def _without(ranked: Sequence[tuple[float, Fit]], name: str) -> tuple[Fit, float]:
+    """The likeliest hypothesis that does without a cause; `none` always does."""
+    return next((fit, score) for score, fit in ranked if name not in fit.names)
 
 
 def _line(fit: Fit, score: float) -> dict[str, object]:

@@ -11,7 +11,7 @@ from typing import Any
 
 from app.blind.calibration import calibration
 from app.blind.interval import bootstrap, median, rate
-from app.blind.strength import STRATA
+from app.blind.strength import EDGES, STRATA
 
 Line = Mapping[str, Any]
 
@@ -50,6 +50,7 @@ def group(lines: Sequence[Line]) -> dict[str, Any]:
         "unexplained_found": rate([li["verdict"] == "unexplained" for li in visible if kind_of(li) == "outsider"]),
         "unexplained_wrongly": rate([li["verdict"] == "unexplained" for li in visible if kind_of(li) != "outsider"]),
         "both_of_two": rate([li["mark"]["found"] == 2 for li in visible if kind_of(li) == "effects"]),
+        "both_visible": rate([li["mark"]["found"] == 2 for li in visible if _both_visible(li)]),
         "one_of_two": rate([li["mark"]["found"] >= 1 for li in visible if kind_of(li) == "effects"]),
         "calibration": calibration([[tuple(claim) for claim in line["mark"]["claims"]] for line in lines]),
         "sizes": _sizes(visible),
@@ -74,6 +75,11 @@ def _faulty(line: Line) -> bool:
 def hidden(line: Line) -> bool:
     """Whether the fault moves the position by less than the floor."""
     return _faulty(line) and line["stratum"] == STRATA[0]
+
+
+def _both_visible(line: Line) -> bool:
+    """Whether there are two causes, each of which alone moves the position by more than the floor."""
+    return kind_of(line) == "effects" and line["weakest"] >= EDGES[0]
 
 
 def _stratum(lines: Sequence[Line], name: str) -> dict[str, Any]:

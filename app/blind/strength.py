@@ -24,17 +24,24 @@ STRATA = ("below 1", "1 to 3", "3 to 10", "above 10")
 class Strength:
     """`gap_in`: RMS by which the faults move the position reading. `noise_in`: RMS of that reading's noise.
 
-    `floor_in`: the noise together with the margin by which the healthy machine departs from its baseline. All in in.
+    `floor_in`: the noise together with the margin by which the healthy machine departs from its baseline. `alone_in`:
+    the gap of each fault without the others. All in in.
     """
 
     gap_in: float
     noise_in: float
     floor_in: float
+    alone_in: tuple[float, ...] = ()
 
     @property
     def ratio(self) -> float:
         """Fault over floor; 0 for a healthy valve."""
         return self.gap_in / self.floor_in
+
+    @property
+    def weakest(self) -> float:
+        """The least of the faults, as if it were alone, over the floor; 0 for a healthy valve."""
+        return min(self.alone_in, default=0.0) / self.floor_in
 
 
 def strength(label: Label, time_s: FloatArray, command: FloatArray) -> Strength:
@@ -52,7 +59,9 @@ def strength(label: Label, time_s: FloatArray, command: FloatArray) -> Strength:
     healthy = read(0.0, {})
     noise = _rms(read(1.0, {}) - healthy)
     gap = _rms(read(0.0, effects) - healthy) if effects else 0.0
-    return Strength(gap, noise, float(np.hypot(noise, margin(label.family).position)))
+    single = [{name: size} for name, size in effects.items()]
+    alone = [_rms(read(0.0, fault) - healthy) for fault in single] if len(single) > 1 else [gap] * len(single)
+    return Strength(gap, noise, float(np.hypot(noise, margin(label.family).position)), tuple(alone))
 
 
 def stratum(ratio: float) -> str:

@@ -42,6 +42,7 @@ def _further(group: Mapping[str, Any]) -> list[Row]:
         ("outsider noticed as unexplained", *_rate(group["unexplained_found"])),
         ("unexplained although the cause is known", *_rate(group["unexplained_wrongly"])),
         ("both of two causes", *_rate(group["both_of_two"])),
+        ("  where each alone is above 1 x floor", *_rate(group["both_visible"])),
         ("at least one of two causes", *_rate(group["one_of_two"])),
         ("expected calibration error", number(calibration["ece"]), _interval(calibration["ci95"])),
         ("error of the size, median", *_median(sizes["error"])),

@@ -149,6 +149,7 @@ def _unsealed(order: Order) -> dict[str, Any]:
         "label": asdict(label),
         "strength": asdict(force),
         "ratio": force.ratio,
+        "weakest": force.weakest,
         "stratum": stratum(force.ratio),
         **{key: said[key] for key in ("verdict", "causes", "confusable", "gap")},
         "ranking": said["ranking"][:10],

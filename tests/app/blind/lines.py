@@ -44,6 +44,7 @@ def line(number: int, truth: Label, answer: dict[str, Any], ratio: float, closed
         "commitment": f"{number:064x}",
         "label": asdict(truth),
         "ratio": ratio,
+        "weakest": ratio,
         "stratum": stratum(ratio),
         **{key: answer[key] for key in ("verdict", "causes", "confusable", "ranking", "gap")},
         "where_stage": answer["where"]["stage"],

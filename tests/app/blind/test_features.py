@@ -26,4 +26,5 @@ def test_a_delay_shows_in_the_pressure_channel_alone() -> None:
     assert first["accepted"] == ["dead_time"] and first["score_gap_to_rival"] > 0.0
     assert first["none_mse"] > 50.0 and first["accepted_mse"] < 2.0
     assert second["accepted"] == [] and second["none_mse"] < 3.0
+    assert first["without"]["dead_time"]["mse"] > 1.2 * first["accepted_mse"] and second["without"] == {}
     assert first["best"][0]["score"] >= first["best"][1]["score"]

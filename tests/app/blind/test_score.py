@@ -21,6 +21,12 @@ def test_what_counts_and_what_is_reported_apart() -> None:
     assert (everything["both_of_two"]["hits"], everything["one_of_two"]["hits"]) == (0, 1)
 
 
+def test_two_causes_of_which_one_cannot_be_seen_are_counted_apart() -> None:
+    one, two = (line(k, label("effects", "creep", "dead_time"), said("effect", ("creep", 0.9)), 9.0) for k in (0, 1))
+    found = score([one, two | {"weakest": 0.4}])["all"]
+    assert (found["both_of_two"]["of"], found["both_visible"]["of"]) == (2, 1)
+
+
 def test_top_k_asks_for_both_of_two_among_one_more() -> None:
     answer = said("effects", ("creep", 0.9), ("dead_time", 0.8))
     found = score([line(0, label("effects", "creep", "dead_time"), answer, 9.0)])["all"]
