@@ -44,7 +44,8 @@ def coded_slave(*arguments: str) -> Iterator[str]:
 def main() -> None:
     from hal.clock import RealClock
     from sim_device.diagnostics import Diagnostics
-    from sim_device.faults import FaultyLine, parse_faults
+    from sim_device.faults import parse_faults
+    from sim_device.faulty_line import FaultyLine
     from sim_device.identity import Identity
     from sim_device.line import Line, Unit
     from sim_device.pacing import Pace

@@ -1,5 +1,8 @@
 """Modbus TCP: every answer carries the number of its request, so a late one is recognised and dropped.
 
+The stream has no borders but the lengths in its headers. When an answer was cut, what follows would be read from its
+middle on; so a connection that is out of step is given up, and the next request is asked on a new one.
+
 Source: Modbus Messaging on TCP/IP Implementation Guide V1.0b, section 3.1.3 (MBAP header).
 """
 
@@ -31,13 +34,15 @@ class TcpBus:
         self._name = name
         self._number = 0
         self._data = b""
+        self._answered = False  # somebody there has spoken Modbus TCP
+        self._lost = False  # nobody knows where in the stream the next header is
 
     @property
     def stats(self) -> BusStats:
         return self._stats
 
     def open(self) -> None:
-        self._data = b""
+        self._data, self._answered, self._lost = b"", False, False
         self._transport.open()
 
     def close(self) -> None:
@@ -47,6 +52,8 @@ class TcpBus:
         return with_retries(lambda: self._once(request), retries, self._stats)
 
     def _once(self, request: Request) -> Reply:
+        if self._lost:
+            self._connect_anew()
         self._number = (self._number + 1) & 0xFFFF
         frame = struct.pack(">HHHB", self._number, 0, len(request.pdu) + 1, request.unit) + request.pdu
         sent_s = self._clock.now_s()
@@ -61,24 +68,47 @@ class TcpBus:
                     continue
                 if unit != request.unit or not request.accepts(pdu):
                     continue  # the right number with the wrong contents: no answer
+                self._answered = True
                 return accept(request, Reply(pdu, sent_s, self._clock.now_s()), self._stats, self._name)
+        raise self._silence(request, frame)
+
+    def _silence(self, request: Request, frame: bytes) -> WireFault:
+        """No answer in time. Half of one may be there: its rest may never come, and then it would be the next one's."""
+        self._lost = bool(self._data)
         self._stats.timeouts += 1
-        raise WireFault(
-            f"unit {request.unit} on {self._name}: no answer within {self._timeout_s:g} s; "
+        self._stats.damaged += self._lost
+        said = f"only {len(self._data)} bytes of an answer" if self._data else "no answer"
+        return WireFault(
+            f"unit {request.unit} on {self._name}: {said} within {self._timeout_s:g} s; "
             "check the unit id and whether this is Modbus TCP (rtu+tcp:// for a gateway that passes RTU frames)",
             sent=frame,
             received=self._data,
             waited_s=self._timeout_s,
         )
 
+    def _connect_anew(self) -> None:
+        self._stats.late_bytes += len(self._data)
+        self._data = b""
+        self._transport.close()
+        self._transport.open()
+        self._lost = False
+        self._stats.resyncs += 1
+
     def _message(self) -> tuple[int, int, bytes] | None:
-        """The next whole message as (number, unit, PDU). Raises: `PortFault` when the stream is not Modbus TCP."""
+        """The next whole message as (number, unit, PDU).
+
+        Raises: `PortFault` when this never was Modbus TCP, `WireFault` when it no longer is.
+        """
         if len(self._data) < _HEADER:
             return None
         number, protocol, length, unit = struct.unpack(">HHHB", self._data[:_HEADER])
         if protocol != 0 or not 3 <= length <= 254:
-            # A stream without frame borders cannot be found again: the connection has to be made anew.
-            raise PortFault(f"port {self._name} does not speak Modbus TCP (got {self._data[:8].hex(' ')})")
+            self._lost = True
+            got = self._data[:8].hex(" ")
+            if not self._answered:
+                raise PortFault(f"port {self._name} does not speak Modbus TCP (got {got})")
+            self._stats.damaged += 1
+            raise WireFault(f"port {self._name} is out of step (got {got}); it is connected anew", received=self._data)
         if len(self._data) < 6 + length:
             return None
         pdu = self._data[_HEADER : 6 + length]

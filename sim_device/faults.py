@@ -1,12 +1,10 @@
-"""What a bad line does to a reply: late, noisy, flipped, lost, cut, mislabelled, refused, echoed. Seeded."""
+"""What a bad line can do to a reply: late, noisy, flipped, lost, cut, mislabelled, refused, echoed."""
 
 from __future__ import annotations
 
-import random
 from dataclasses import dataclass, fields
 
 from hal.errors import BadInput
-from sim_device.crc import sealed
 
 
 @dataclass(frozen=True)
@@ -25,6 +23,7 @@ class WireFaults:
     truncate: float = 0.0
     wrong_unit: float = 0.0
     wrong_function: float = 0.0
+    wrong_transaction: float = 0.0
     exception: float = 0.0
     local_echo: bool = False
     late_from: float = 0.9
@@ -46,6 +45,12 @@ class WireFaults:
     def any(self) -> bool:
         return self.local_echo or any(getattr(self, name) > 0.0 for name in FRACTIONS)
 
+    def refuse(self, names: tuple[str, ...], why: str) -> None:
+        """Raises: `BadInput` when one of the faults `names` is asked for."""
+        for name in names:
+            if getattr(self, name):
+                raise BadInput(f"wire fault '{name}': {why}")
+
 
 FRACTIONS = tuple(item.name for item in fields(WireFaults) if item.default == 0.0 and isinstance(item.default, float))
 
@@ -56,62 +61,6 @@ class Emission:
 
     delay_s: float
     data: bytes
-
-
-class FaultyLine:
-    """Applies `WireFaults` to RTU frames; the same seed and the same replies give the same faults."""
-
-    def __init__(self, faults: WireFaults) -> None:
-        self.faults = faults
-        self.injected = dict.fromkeys((*FRACTIONS, "local_echo"), 0)
-        self._random = random.Random(faults.seed)
-        self._refusals_left = 0
-
-    def emit(self, request: bytes, reply: bytes) -> Emission:
-        """`request` and `reply` are whole frames with CRC."""
-        faults = self.faults
-        body = self._mislabelled(reply)
-        delay_s = 0.0
-        if self._strikes("late"):
-            delay_s = faults.timeout_s * self._random.uniform(faults.late_from, faults.late_to)
-        if self._strikes("bit_flip"):
-            at = self._random.randrange(8 * len(body))
-            body = body[: at // 8] + bytes((body[at // 8] ^ (1 << at % 8),)) + body[at // 8 + 1 :]
-        if self._strikes("truncate"):
-            body = body[: self._random.randrange(1, len(body))]
-        if self._strikes("drop"):
-            body = b""
-        if self._strikes("noise_before"):
-            body = self._noise() + body
-        if self._strikes("noise_after"):
-            body += self._noise()
-        if faults.local_echo:
-            self.injected["local_echo"] += 1
-            body = request + body
-        return Emission(delay_s, body)
-
-    def _mislabelled(self, reply: bytes) -> bytes:
-        """A reply that is intact on the wire and not the one that was asked for."""
-        body = reply[:-2]
-        if self._strikes("exception"):
-            self._refusals_left = self.faults.exception_burst
-        if self._refusals_left > 0:
-            self._refusals_left -= 1
-            body = bytes((body[0], body[1] | 0x80, self.faults.exception_code))
-        if self._strikes("wrong_unit"):
-            body = bytes((body[0] % 247 + 1,)) + body[1:]
-        if self._strikes("wrong_function"):
-            body = bytes((body[0], body[1] ^ 0x07)) + body[2:]
-        return sealed(body)
-
-    def _strikes(self, name: str) -> bool:
-        fraction = getattr(self.faults, name)
-        hit = bool(fraction > 0.0 and self._random.random() < fraction)
-        self.injected[name] += hit
-        return hit
-
-    def _noise(self) -> bytes:
-        return self._random.randbytes(self._random.randint(1, 6))
 
 
 def parse_faults(specs: tuple[str, ...], *, seed: int = 0, timeout_s: float = 0.1) -> WireFaults:

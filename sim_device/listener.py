@@ -10,6 +10,7 @@ import threading
 from collections.abc import Callable
 
 from hal.errors import BadInput, PortFault
+from sim_device.faulty_stream import FaultyStream, mbap
 from sim_device.line import Line
 
 RTU_SCHEME, TCP_SCHEME = "rtu+tcp://", "tcp://"
@@ -33,7 +34,15 @@ class Listener:
     Loopback only unless `allow_remote`: a virtual valve on a network is found by things that look for real ones.
     """
 
-    def __init__(self, address: str, serve_rtu: Callable[[int], None], line: Line, *, allow_remote: bool) -> None:
+    def __init__(
+        self,
+        address: str,
+        serve_rtu: Callable[[int], None],
+        line: Line,
+        *,
+        allow_remote: bool,
+        faults: FaultyStream | None = None,
+    ) -> None:
         self._scheme, host, port = parse_address(address)
         if not allow_remote and not _is_loopback(host):
             raise BadInput(f"'{host}' is not this machine's loopback address; the virtual device listens on 127.0.0.1")
@@ -46,12 +55,15 @@ class Listener:
         self.url = f"{self._scheme}{shown}:{self._socket.getsockname()[1]}"
         self._serve_rtu = serve_rtu
         self._line = line
+        self._faults = faults
+        self._closing = threading.Event()
         self._connections: set[socket.socket] = set()
         self._threads: list[threading.Thread] = []
         self._accepting = threading.Thread(target=self._accept, name="virtual-device-accept", daemon=True)
         self._accepting.start()
 
     def close(self) -> None:
+        self._closing.set()
         for item in (self._socket, *self._connections):
             with contextlib.suppress(OSError):
                 item.shutdown(socket.SHUT_RDWR)
@@ -76,11 +88,20 @@ class Listener:
             if self._scheme == RTU_SCHEME:
                 self._serve_rtu(connection.fileno())
             else:
-                serve_mbap(connection, self._line)
+                serve_mbap(connection, self._line, self._send)
         self._connections.discard(connection)
 
+    def _send(self, connection: socket.socket, number: int, unit: int, pdu: bytes) -> None:
+        """Sends a reply; what is behind it waits as long as a late one does, because a slave answers in order."""
+        data = mbap(number, unit, pdu)
+        if self._faults is not None:
+            emission = self._faults.emit(number, unit, pdu)
+            self._closing.wait(emission.delay_s)
+            data = emission.data
+        connection.sendall(data)
 
-def serve_mbap(connection: socket.socket, line: Line) -> None:
+
+def serve_mbap(connection: socket.socket, line: Line, send: Callable[[socket.socket, int, int, bytes], None]) -> None:
     """Answers Modbus TCP requests until the far end closes, or sends what cannot be a request (then hangs up).
 
     Source: Modbus Messaging on TCP/IP V1.0b, section 3.1.3.
@@ -98,7 +119,7 @@ def serve_mbap(connection: socket.socket, line: Line) -> None:
                 return
             reply = line.tcp(unit, pdu)
             if reply is not None:
-                connection.sendall(struct.pack(">HHHB", transaction, 0, len(reply) + 1, unit) + reply)
+                send(connection, transaction, unit, reply)
 
 
 def _is_loopback(host: str) -> bool:

@@ -9,7 +9,7 @@ import threading
 from collections.abc import Callable
 
 from hal.clock import Clock
-from sim_device.faults import FaultyLine
+from sim_device.faulty_line import FaultyLine
 from sim_device.framer import RequestFramer
 from sim_device.line import Line
 from sim_device.pacing import Pace, emit, sharpen_timer

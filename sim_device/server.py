@@ -12,7 +12,9 @@ from hal.clock import Clock, RealClock, SteppedClock
 from hal.errors import BadInput
 from hal.profile import Profile
 from sim_device.device import Options, build_units
-from sim_device.faults import FaultyLine, WireFaults
+from sim_device.faults import WireFaults
+from sim_device.faulty_line import FaultyLine
+from sim_device.faulty_stream import FaultyStream
 from sim_device.line import Line
 from sim_device.listener import RTU_SCHEME, Listener, parse_address
 from sim_device.pacing import Pace
@@ -53,9 +55,7 @@ class VirtualDevice:
         self._idle_reset_s = idle_reset_s
         self._clock = clock
         self._pace = _pace(profile, pace_baud)
-        self.line_faults = FaultyLine(faults) if faults is not None and faults.any else None
-        if self.line_faults is not None and tcp is not None and parse_address(tcp)[0] != RTU_SCHEME:
-            raise BadInput("wire faults disturb RTU frames; Modbus TCP has none: use a pseudo-terminal or rtu+tcp://")
+        self.line_faults, self.stream_faults = _faulty(faults, tcp, link)
         options = options or Options()
         self.rig = Rig(physics, clock, safe_command=profile.safe_command, refresh_s=options.refresh_s)
         units = build_units(profile, self.rig, clock, options)
@@ -82,7 +82,13 @@ class VirtualDevice:
         self._stop = Stop()
         try:
             if self._tcp is not None:
-                self._listener = Listener(self._tcp, self._serve_socket, self._line, allow_remote=self._allow_remote)
+                self._listener = Listener(
+                    self._tcp,
+                    self._serve_socket,
+                    self._line,
+                    allow_remote=self._allow_remote,
+                    faults=self.stream_faults,
+                )
             if self._tcp is None or self._link is not None:
                 self._terminal = PseudoTerminal(self._link)
                 self._thread = threading.Thread(target=self._serve_terminal, name="virtual-device", daemon=True)
@@ -131,6 +137,20 @@ class VirtualDevice:
             idle_reset_s=self._idle_reset_s,
             on_quiet=on_quiet,
         )
+
+
+def _faulty(
+    faults: WireFaults | None, tcp: str | None, link: Path | None
+) -> tuple[FaultyLine | None, FaultyStream | None]:
+    """The faults of the RTU line and of the Modbus TCP connections, where there are such.
+
+    Raises: `BadInput` for a fault that one of them cannot have.
+    """
+    if faults is None or not faults.any:
+        return None, None
+    stream = tcp is not None and parse_address(tcp)[0] != RTU_SCHEME
+    line = not stream or link is not None
+    return FaultyLine(faults) if line else None, FaultyStream(faults) if stream else None
 
 
 def _pace(profile: Profile, baud: int | None) -> Pace | None:

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
               help="Stepped: virtual time, moved by the master through the simulation registers.")  # fmt: skip
 @click.option("--fault", "faults", multiple=True, metavar="NAME=FRACTION",
               help="Bad line: late=0.05:0.9-3.5, noise_before=0.05, bit_flip=0.03, drop, truncate, wrong_unit, "
-              "wrong_function, exception=0.01:6x20, noise_after, local_echo.")  # fmt: skip
+              "wrong_function, exception=0.01:6x20, noise_after, local_echo. Modbus TCP: wrong_transaction too, and "
+              "no noise, flips or echo.")  # fmt: skip
 @click.option("--fault-timeout", type=click.FloatRange(min=0, min_open=True), default=0.1, show_default=True,
               help="The timeout [s] that late replies are measured in.")  # fmt: skip
 @click.option("--pace", type=click.IntRange(min=300), metavar="BAUD", help="Let every byte take its time on the wire.")

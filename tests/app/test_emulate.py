@@ -53,7 +53,8 @@ def test_it_says_where_it_listens_answers_there_and_takes_its_link_away(tmp_path
         (["--physics", "perpetuum"], "there is no physics 'perpetuum'"),
         (["--effect", "stiction"], "NAME=NUMBER"),
         (["--profile", "nowhere.toml"], "nowhere.toml"),
-        (["--tcp", "127.0.0.1:0", "--fault", "drop=0.1"], "Modbus TCP has none"),
+        (["--tcp", "127.0.0.1:0", "--fault", "bit_flip=0.1"], "use a pseudo-terminal or rtu+tcp://"),
+        (["--fault", "wrong_transaction=0.1"], "it needs Modbus TCP"),
     ],
 )
 def test_what_it_cannot_do_is_one_sentence(arguments: list[str], message: str) -> None:

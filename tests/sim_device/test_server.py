@@ -158,7 +158,9 @@ def test_bytes_that_a_cooked_terminal_would_swallow(wire) -> None:  # type: igno
 
 
 def test_faults_and_pacing_are_refused_where_they_mean_nothing(start) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(BadInput, match="Modbus TCP has none"):
-        start(tcp="127.0.0.1:0", faults=WireFaults(drop=0.1))
+    with pytest.raises(BadInput, match="'bit_flip': it is a fault of serial lines"):
+        start(tcp="127.0.0.1:0", faults=WireFaults(bit_flip=0.1))
+    with pytest.raises(BadInput, match="needs Modbus TCP"):
+        start(tcp="rtu+tcp://127.0.0.1:0", faults=WireFaults(wrong_transaction=0.1))
     with pytest.raises(BadInput, match="the least is 300"):
         start(pace_baud=50)
