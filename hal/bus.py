@@ -31,6 +31,7 @@ class Trust:
 
     def __post_init__(self) -> None:
         self.turnaround_s = self.device.turnaround_ms / 1000.0
+        self.counts_lengths = self.device.resync.method == "read"
 
 
 class RtuBus:
@@ -57,12 +58,15 @@ class RtuBus:
         self._line.close()
 
     def transact(self, request: Request, retries: int = 0) -> Reply:
-        return with_retries(lambda: self._once(request), retries, self.stats)
+        return with_retries(lambda: self._once(request), retries, self.stats) if retries else self._once(request)
 
     def timeout_s(self, request: Request) -> float:
         """How long to wait for an answer [s]: both frames on the wire, the device's turnaround, and the margin."""
+        return self._patience_s(self._trust(request.unit), request)
+
+    def _patience_s(self, trust: Trust, request: Request) -> float:
         chars = len(request.pdu) + (request.size or 250) + 6
-        return chars * self._char_s + self._trust(request.unit).turnaround_s + self._margin_s
+        return chars * self._char_s + trust.turnaround_s + self._margin_s
 
     def _trust(self, unit: int) -> Trust:
         trust = self._units.get(unit)
@@ -72,7 +76,7 @@ class RtuBus:
 
     def _once(self, request: Request) -> Reply:
         trust = self._trust(request.unit)
-        if request.function in (3, 4, 23):
+        if trust.counts_lengths and request.function in (3, 4, 23):
             trust.lengths.add(request.size // 2 - 1)
         if stray := self._line.strays():
             self.stats.noise_bytes += stray
@@ -83,7 +87,7 @@ class RtuBus:
 
     def _ask(self, trust: Trust, request: Request) -> Reply:
         trust.clean = False  # until the answer is here, whatever happens in between
-        reply = self._line.ask(request, self.timeout_s(request))
+        reply = self._line.ask(request, self._patience_s(trust, request))
         trust.clean = reply.rest == 0
         return reply
 

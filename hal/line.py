@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+import math
+
 from hal.clock import Clock, RealClock
 from hal.errors import WireFault
 from hal.framing import describe, find_reply, seal
 from hal.pdu import Request
 from hal.profile import Serial
+from hal.promptly import EARLY_S, wait_until
 from hal.reply import Reply
 from hal.stats import BusStats
 from hal.transport import Transport
+from hal.vigil import Vigil
 
 _SETTLE_CHARS = 40  # a pause inside a late answer must not look like its end; USB adapters pause for milliseconds
 _SETTLE_S = 0.002
+_NEAR_S = 0.0015  # when the end of a frame is so near, it is not worth being woken up for the bytes before it
 
 
 class RtuLine:
@@ -33,6 +38,7 @@ class RtuLine:
         self._wire = wire or RealClock()
         self._silence_s = serial.silence_s if serial.pacing == "spec" else 0.0
         self._char_s = serial.char_s if serial.pacing == "spec" else 0.0
+        self._vigil = Vigil()
         self._quiet_since_s = 0.0  # wire time of the last byte in either direction
 
     def open(self) -> None:
@@ -47,23 +53,26 @@ class RtuLine:
         frame = seal(request.unit, request.pdu)
         sent_s = self._send(frame)
         deadline_s = self._wire.now_s() + timeout_s
+        due_s = math.inf  # when the last bit of the answer can be here
         data, left_s = b"", timeout_s
         while left_s > 0.0:
-            data += self._read(left_s)
+            data += self._read(left_s) if due_s == math.inf else self._read_near(due_s, left_s)
             start = self._start(data, frame, request)
             found = find_reply(data[start:] if start else data, request) if start >= 0 else None
             if found is not None:
-                self.stats.noise_bytes += found[0]
-                return self._answer(data, start + found[0], start + found[1], sent_s)
-            left_s = deadline_s - self._wire.now_s()
+                return self._answer(data, start, found, sent_s)
+            now_s = self._wire.now_s()
+            left_s = deadline_s - now_s
+            due_s = min(due_s, now_s + self._missing_s(data, start, request))
         self.stats.timeouts += 1
         self.stats.damaged += bool(data)
         raise WireFault(self._sentence(request, data, timeout_s), sent=frame, received=data, waited_s=timeout_s)
 
-    def _answer(self, data: bytes, first: int, last: int, sent_s: float) -> Reply:
+    def _answer(self, data: bytes, start: int, found: tuple[int, int], sent_s: float) -> Reply:
         received_s = self._clock.now_s()
+        first, last = start + found[0], start + found[1]
         rest = len(data) - last
-        self.stats.noise_bytes += rest
+        self.stats.noise_bytes += found[0] + rest
         return Reply(data[first + 1 : last - 2], sent_s, received_s, rest)
 
     def _start(self, data: bytes, frame: bytes, request: Request) -> int:
@@ -76,6 +85,24 @@ class RtuLine:
         at = data.find(frame)
         return at + len(frame) if at >= 0 else -1
 
+    def _missing_s(self, data: bytes, start: int, request: Request) -> float:
+        """How long the rest of the answer takes on the wire [s], as far as its length is known."""
+        if not data or start < 0 or not request.size:
+            return math.inf
+        refused = len(data) > start + 1 and data[start + 1] & 0x80
+        return max(0, (5 if refused else request.size + 3) - len(data) + start) * self.serial.char_s
+
+    def _read_near(self, due_s: float, left_s: float) -> bytes:
+        """The next bytes. Near the moment when an answer is due they are watched for, as long as that pays."""
+        if due_s - self._wire.now_s() < _NEAR_S:
+            self._wire.sleep_until(due_s - EARLY_S)
+            if data := self._vigil.keep(self._look):
+                return data
+        return self._read(left_s)
+
+    def _look(self) -> bytes:
+        return self._read(0.0)
+
     def _read(self, timeout_s: float) -> bytes:
         data = self._transport.read(timeout_s)
         if data:
@@ -85,7 +112,7 @@ class RtuLine:
     def _send(self, frame: bytes) -> float:
         """Keeps the silence, sends, and returns the bench time of sending."""
         if self._silence_s:
-            self._wire.sleep_until(self._quiet_since_s + self._silence_s)
+            wait_until(self._wire, self._quiet_since_s + self._silence_s)
         sent_s = self._clock.now_s()
         self._transport.write(frame)
         if self._silence_s:  # write() returns while the bits are still on their way out

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 EXCEPTIONS = {
     1: "illegal function",
@@ -23,8 +23,7 @@ EXCEPTIONS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
+class Request(NamedTuple):
     """One request and the answer it accepts: a PDU that begins with `head` and is `size` bytes long (0: see `ends`).
 
     `echoes` marks functions whose answer repeats the request, which a line with local echo would fake.

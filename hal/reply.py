@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from hal.errors import DeviceRefused, WireFault
 from hal.pdu import EXCEPTIONS, Request, words_of
@@ -12,8 +11,7 @@ from hal.profile import Serial
 from hal.stats import BusStats
 
 
-@dataclass(frozen=True, slots=True)
-class Reply:
+class Reply(NamedTuple):
     """An answer: its PDU, and the bench time [s] just before the request left and just after the answer was complete.
 
     `rest` is the number of bytes that followed the answer without a pause; a clean line has none.

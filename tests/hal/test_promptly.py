@@ -8,6 +8,7 @@ import sys
 import pytest
 
 from hal import promptly
+from hal.clock import SteppedClock
 
 GET = {"x86_64": 315, "aarch64": 275}
 
@@ -17,6 +18,27 @@ def turn_ns() -> int:
     room = ctypes.create_string_buffer(promptly._ATTRIBUTES.size)
     assert ctypes.CDLL(None).syscall(GET[platform.machine()], 0, room, len(room), 0) == 0
     return int(promptly._ATTRIBUTES.unpack(room.raw)[5])
+
+
+class Looked(SteppedClock):
+    """Virtual time in which `looks` looks at the clock cost a microsecond each, and further ones nothing."""
+
+    def __init__(self, looks: int) -> None:
+        super().__init__()
+        self._looks = looks
+
+    def now_s(self) -> float:
+        if self._looks:
+            self._looks -= 1
+            self.sleep_until(super().now_s() + 1e-6)
+        return super().now_s()
+
+
+@pytest.mark.parametrize("looks", [0, 10, 1000], ids=["a clock that stands still", "one that stops", "one that runs"])
+def test_waiting_ends_at_the_moment_whatever_the_clock_does(looks: int) -> None:
+    clock = Looked(looks)
+    promptly.wait_until(clock, 0.005)
+    assert clock.now_s() == pytest.approx(0.005, abs=3e-6)
 
 
 def test_turns_are_short_while_it_is_open_and_as_before_afterwards() -> None:
