@@ -125,7 +125,7 @@ def undisturbed() -> Iterator[None]:
 
 
 def _hint(job: Job, folder: Path) -> str:
-    return f"\ngo on with: lostmotion sweep --resume {folder}" if job.kind == "sweep" else ""
+    return f"\ngo on with: lostmotion {job.kind} --resume {folder}"
 
 
 def _check_watchdogs(session: Session, period_s: float) -> None:

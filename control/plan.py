@@ -58,10 +58,10 @@ def approach(done: Sequence[Step], stay_s: float) -> tuple[Step, ...]:
     return tuple(Step(value, value, 0.0, stay_s, label="approach") for value in turning_points(values))
 
 
-def plan_targets(targets_in: Sequence[float], hold_s: float, period_s: float, travel_in: float) -> Plan:
-    """Positions [in] to be held one after the other for `hold_s` each.
+def plan_targets(targets_in: Sequence[float], hold_s: float, period_s: float, travel_in: float, first: int = 0) -> Plan:
+    """Positions [in] to be held one after the other for `hold_s` each, or what is left of them from `first` on.
 
-    Raises: `BadInput` for a target outside the travel, or times that cannot be.
+    Raises: `BadInput` for a target outside the travel, times that cannot be, or no target `first`.
     """
     if not targets_in:
         raise BadInput('there is no target; give positions in inches, for example --targets "0.1,0.4,0.25"')
@@ -70,7 +70,9 @@ def plan_targets(targets_in: Sequence[float], hold_s: float, period_s: float, tr
             raise BadInput(f"target {number} is {target_in:g} in; the valve travels from 0 to {travel_in:g} in")
     if not (math.isfinite(hold_s) and hold_s > 0.0):
         raise BadInput(f"--hold {hold_s:g} s must be above 0")
-    return Plan(period_s, tuple(Step(target, target, 0.0, hold_s) for target in targets_in))
+    if not 0 <= first < len(targets_in):
+        raise BadInput(f"there are targets 0 to {len(targets_in) - 1}, there is no target {first}")
+    return Plan(period_s, tuple(Step(target, target, 0.0, hold_s) for target in targets_in[first:]), first=first)
 
 
 def check_bench(plan: Plan, unit: str, low: float, high: float, info: BenchInfo) -> None:

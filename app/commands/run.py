@@ -1,12 +1,15 @@
 """Close the loop: hold a sequence of positions with a controller, and record it.
 
 --controller is a name (`--list` shows them), --targets positions in inches, for example "0.1,0.4,0.25", --hold the time
-on each. Without --port the virtual valve is controlled, over Modbus frames, in stepped time.
+on each. Without --port the virtual valve is controlled, over Modbus frames, in stepped time. --resume goes on with the
+target that a stopped run did not finish.
 """
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -21,7 +24,18 @@ if TYPE_CHECKING:
     from app.session import Session
     from control.design import DesignModel
     from control.plan import Plan
-    from control.tracking import TargetResult
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """What is asked for, as words or as the record of a stopped run says it."""
+
+    controller: str
+    settings: Mapping[str, Any]
+    design: DesignModel
+    plan: Plan
+    targets_in: Sequence[float]
+    continues: Mapping[str, object] = field(default_factory=dict)
 
 
 @click.command(name="run", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
@@ -32,6 +46,7 @@ if TYPE_CHECKING:
 @click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a setting of the controller.")
 @click.option("--twin", metavar="MODEL.toml", type=click.Path(path_type=Path), help="Run this model beside the bench.")
 @click.option("--period", "period_s", type=float, default=0.1, show_default=True, metavar="S", help="Tick [s].")
+@click.option("--resume", metavar="RUN", type=click.Path(path_type=Path), help="Go on with a run that was stopped.")
 @bench_options
 @sealed_option
 @record_options
@@ -45,12 +60,13 @@ def command(
     design: Path | None,
     settings: tuple[str, ...],
     period_s: float,
+    resume: Path | None,
     list_them: bool,
     dry_run: bool,
     as_json: bool,
     **bench: Any,
 ) -> None:
-    from control.controller import make_controller, parse_settings
+    from control.controller import parse_settings
     from control.design import DesignModel, load_design
     from control.plan import plan_targets
     from hal.errors import BadInput
@@ -59,23 +75,52 @@ def command(
     if list_them:
         _list(as_json)
         return
-    if controller is None or targets is None:
-        raise BadInput('give a controller and targets, for example: run --controller if_then_pi --targets "0.1,0.4"')
-    model = DesignModel() if design is None else load_design(design)
-    make_controller(controller, model, **parse_settings(settings))  # a wrong name or setting is said before anything
     found = load_profile(bench["profile"] or "virtual")
-    plan = plan_targets(_numbers(targets), hold_s, period_s, found.travel_in)
-    if dry_run:
-        _preview(plan, controller, as_json)
+    if resume is not None:
+        wanted = _resumed(resume, found.travel_in)
+    elif controller is None or targets is None:
+        raise BadInput('give a controller and targets, for example: run --controller if_then_pi --targets "0.1,0.4"')
     else:
-        _run(plan, controller, settings, model, as_json, **{**bench, "profile": found})
+        model = DesignModel() if design is None else load_design(design)
+        places = _numbers(targets)
+        plan = plan_targets(places, hold_s, period_s, found.travel_in)
+        wanted = Wanted(controller, parse_settings(settings), model, plan, places)
+    _check(wanted)
+    if dry_run:
+        _preview(wanted, as_json)
+    else:
+        _run(wanted, as_json, **{**bench, "profile": found})
+
+
+def _check(wanted: Wanted) -> None:
+    """A wrong name or setting is said before anything. Raises: `BadInput`."""
+    from control.controller import make_controller
+
+    make_controller(wanted.controller, wanted.design, **wanted.settings)
+
+
+def _resumed(path: Path, travel_in: float) -> Wanted:
+    from app.resume import continues, refuse_given, stopped_run
+    from control.design import DesignModel
+    from control.plan import plan_targets
+    from hal.errors import BadInput
+
+    refuse_given("controller", "targets", "hold_s", "design", "settings", "period_s")
+    run, first = stopped_run(path, "run")
+    try:
+        told: Any = run.start
+        name, settings = told["controller"]["name"], dict(told["controller"]["settings"])
+        plan = plan_targets(told["targets_in"], told["hold_s"], told["period_s"], travel_in, first)
+        design = DesignModel(**told["design"])
+    except (KeyError, TypeError) as error:
+        raise BadInput(f"{run.path}: its record does not say what is needed to go on ({error})") from error
+    for limit in ("min_psi", "max_psi"):  # those of the bench at hand, which may be another one
+        settings.pop(limit, None)
+    return Wanted(name, settings, design, plan, told["targets_in"], continues(run, first))
 
 
 def _run(
-    plan: Plan,
-    controller: str,
-    settings: tuple[str, ...],
-    model: DesignModel,
+    wanted: Wanted,
     as_json: bool,
     *,
     out: Path | None,
@@ -86,19 +131,20 @@ def _run(
     twin: Path | None,
     **bench: Any,
 ) -> None:
+    from app.held_targets import report
     from app.job import perform
     from app.twin_beside import with_twin
     from control.tracking import judge_targets
     from logs.run import read_run
 
     with open_bench(seed=seed, **bench) as session:
-        job = _job(session, plan, controller, settings, model, {"note": note, "operator": operator, "seed": seed})
+        job = _job(session, wanted, {"note": note, "operator": operator, "seed": seed})
         if twin is not None:
             job = with_twin(job, twin, session.bench.info.command_unit)
-        _announce(session, plan, controller, as_json)
-        done = perform(session, job, out=out, live=live, title=controller)
+        _announce(session, wanted, as_json)
+        done = perform(session, job, out=out, live=live, title=wanted.controller)
         travel_in = session.profile.travel_in
-    _report(judge_targets(read_run(done.folder), travel_in), done.folder, travel_in, as_json)
+    report(judge_targets(read_run(done.folder), travel_in), done.folder, travel_in, as_json)
 
 
 def _numbers(text: str) -> list[float]:
@@ -113,48 +159,44 @@ def _numbers(text: str) -> list[float]:
     return found
 
 
-def _job(
-    session: Session,
-    plan: Plan,
-    controller: str,
-    settings: tuple[str, ...],
-    design: DesignModel,
-    about: dict[str, object],
-) -> Job:
+def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
     from dataclasses import asdict
 
     from app.job import Job
-    from control.controller import make_controller, parse_settings
+    from control.controller import make_controller
     from control.drive import ControllerDrive
     from control.plan import check_bench
 
-    info = session.bench.info
+    info, plan = session.bench.info, wanted.plan
     check_bench(plan, "psi", info.command_min, info.command_max, info)
     limits: dict[str, float | str] = {"min_psi": info.command_min, "max_psi": info.command_max}
-    made = make_controller(controller, design, **{**limits, **parse_settings(settings)})
+    made = make_controller(wanted.controller, wanted.design, **{**limits, **wanted.settings})
     about = {
-        "controller": {"name": controller, "settings": dict(made.settings)},
-        "design": asdict(design),
-        "targets_in": [step.end for step in plan.steps],
+        "controller": {"name": wanted.controller, "settings": dict(made.settings)},
+        "design": asdict(wanted.design),
+        "targets_in": list(wanted.targets_in),
         "hold_s": plan.steps[0].hold_s,
+        **wanted.continues,
         **about,
     }
     return Job("run", plan, lambda begun: ControllerDrive(made, plan.period_s, begun), closed_loop=True, about=about)
 
 
-def _announce(session: Session, plan: Plan, controller: str, as_json: bool) -> None:
+def _announce(session: Session, wanted: Wanted, as_json: bool) -> None:
     from control.preview import duration_words
 
+    plan = wanted.plan
     click.echo(
-        f"{controller} on {session.title}: {len(plan.steps)} targets, {duration_words(plan.duration_s)}, "
+        f"{wanted.controller} on {session.title}: {len(plan.steps)} targets, {duration_words(plan.duration_s)}, "
         f"a tick every {plan.period_s:g} s. The valve will move.",
         err=as_json,
     )
 
 
-def _preview(plan: Plan, controller: str, as_json: bool) -> None:
+def _preview(wanted: Wanted, as_json: bool) -> None:
     from control.preview import duration_words
 
+    plan, controller = wanted.plan, wanted.controller
     targets = [step.end for step in plan.steps]
     if as_json:
         click.echo(json.dumps({"controller": controller, "targets_in": targets, "duration_s": plan.duration_s}))
@@ -175,41 +217,3 @@ def _list(as_json: bool) -> None:
         return
     for name, defaults in names.items():
         click.echo(f"{name:<22} " + ", ".join(f"{key}={value}" for key, value in defaults.items()))
-
-
-def _report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_json: bool) -> None:
-    from dataclasses import asdict
-
-    if as_json:
-        worst = max((abs(r.final_error_in) for r in results), default=float("nan"))
-        document = {
-            "run": str(folder),
-            "targets": [asdict(result) for result in results],
-            "worst_final_error_percent": 100.0 * worst / travel_in,
-        }
-        click.echo(json.dumps(document))
-        return
-    from rich.console import Console
-    from rich.table import Table
-
-    table = Table(title="final error = mean over the last quarter of each hold")
-    for heading in (
-        "target [in]",
-        "position [in]",
-        "error [in]",
-        "error [% of travel]",
-        "swing [% of travel]",
-        "settled [s]",
-    ):
-        table.add_column(heading, justify="right")
-    for r in results:
-        table.add_row(
-            f"{r.target_in:.4f}",
-            f"{r.final_in:.4f}",
-            f"{r.final_error_in:+.4f}",
-            f"{100 * r.final_error_in / travel_in:+.2f}",
-            f"{100 * r.swing_in / travel_in:.2f}",
-            "never" if r.settled_s is None else f"{r.settled_s:.1f}",
-        )
-    Console().print(table)
-    click.echo(f"the valve is at its safe command; record: {folder}")

@@ -116,21 +116,15 @@ def _experiment(
 
 
 def _resumed(path: Path) -> tuple[Experiment, int, dict[str, object]]:
+    from app.resume import continues, stopped_run
     from control.experiment_file import from_plain
     from hal.errors import BadInput
-    from logs.run import read_run
 
-    run = read_run(path)
+    run, first = stopped_run(path, "sweep")
     content = run.start.get("experiment")
     if not isinstance(content, dict):
-        raise BadInput(f"{path}: this run has no experiment to go on with; it is a '{run.kind}'")
-    if run.running:
-        raise BadInput(f"{path}: this run is still being recorded; stop it first")
-    if run.status == "success":
-        raise BadInput(f"{path}: this run is complete; there is nothing to go on with")
-    steps = run.columns.get("step")
-    first = 0 if steps is None or not steps.size else max(0, int(steps[-1]))
-    return from_plain(content, str(path)), first, {"continues": str(run.start.get("uuid", path)), "first_step": first}
+        raise BadInput(f"{run.path}: its record has no experiment to go on with")
+    return from_plain(content, str(run.path)), first, continues(run, first)
 
 
 def _job(session: Session, experiment: Experiment, first: int, about: dict[str, object]) -> Job:

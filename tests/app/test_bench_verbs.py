@@ -210,3 +210,17 @@ def test_every_signal_leaves_the_valve_at_its_safe_command(device, name) -> None
         process.send_signal(getattr(signal, name))
         assert process.wait(20) == 130
     assert device.rig.command == 0.0
+
+
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_every_signal_ends_monitoring_and_leaves_the_valve_as_it_is(device, name) -> None:
+    device.rig.request_command(7.0)  # somebody else's command
+    words = [sys.executable, "-m", "app", "monitor", "--port", device.port, "--period", "0.1", "--json"]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        assert json.loads(process.stdout.readline())["command_psi"] == 7.0
+        process.send_signal(getattr(signal, name))
+        said = process.communicate(timeout=20)[1]
+    assert process.returncode == 130
+    assert said.strip() == "lostmotion: interrupted"
+    assert device.rig.command == 7.0

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import os
+import signal
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.cli import run
+from app.console import RunDisplay
 from control.controller import controller_names, make_controller
 from control.design import DesignModel
+from control.loop import Progress
 from hal.sample import Reading, Sample
 from logs.run import read_run
 
@@ -30,6 +34,43 @@ def test_a_loop_is_closed_recorded_and_judged(tmp_path: Path, capsys: pytest.Cap
     assert recorded.start["controller"]["name"] == "if_then_pi"  # type: ignore[index]
     assert recorded.start["design"]["a1"] == 8.78  # type: ignore[index]
     assert recorded.rows == 800
+
+
+def test_a_stopped_loop_is_gone_on_with_at_the_target_it_did_not_finish(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def interrupt(self: RunDisplay, where: Progress) -> None:
+        if where.step == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+
+    first, rest = str(tmp_path / "a"), str(tmp_path / "b")
+    words = ["--controller", "pi", "--set", "ki=0.7", "--targets", "0.1,0.2,0.3", "--hold", "4", "--period", "0.2"]
+    with monkeypatch.context() as patched:
+        patched.setattr(RunDisplay, "show", interrupt)
+        assert close(*words, "--out", first) == 130
+    assert f"go on with: lostmotion run --resume {first}" in capsys.readouterr().err
+    stopped = read_run(tmp_path / "a")
+    assert (stopped.status, stopped.rows) == ("abort", 21)
+    assert close("--resume", first, "--dry-run") == 0
+    assert "2 targets (0.2, 0.3 in), 8 s, a tick every 0.2 s" in capsys.readouterr().out
+    assert close("--resume", first, "--out", rest, "--json") == 0
+    assert [target["target_in"] for target in json.loads(capsys.readouterr().out)["targets"]] == [0.2, 0.3]
+    going_on = read_run(tmp_path / "b")
+    assert going_on.start["continues"] == stopped.start["uuid"]
+    for key in ("controller", "design", "targets_in", "hold_s", "period_s"):
+        assert going_on.start[key] == stopped.start[key]
+    assert sorted(set(going_on.columns["step"])) == [1.0, 2.0]
+
+
+def test_what_cannot_be_gone_on_with_is_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    done = str(tmp_path / "r")
+    assert close("--controller", "p", "--targets", "0.1", "--hold", "1", "--out", done) == 0
+    assert close("--resume", done) == 2
+    assert "this run is complete" in capsys.readouterr().err
+    assert close("--resume", done, "--hold", "3", "--set", "kp=1") == 2
+    assert "--resume takes --hold, --set from the record of that run; leave it out" in capsys.readouterr().err
+    assert run(["sweep", "--resume", done]) == 2
+    assert "not a 'sweep' but a 'run'; try `lostmotion run --resume`" in capsys.readouterr().err
 
 
 def test_the_record_replays_bit_for_bit(tmp_path: Path) -> None:

@@ -115,7 +115,7 @@ def test_the_positioner_is_swept_in_percent(tmp_path: Path) -> None:
         (["hold", "--profile", "nope"], "no profile 'nope'"),
         (["hold", "--port", "/dev/null", "--physics", "thesis"], "leave them out with --port"),
         (["absent.toml"], "absent.toml: the experiment cannot be read"),
-        (["--resume", "absent"], "absent: does not exist"),
+        (["--resume", "absent"], "'absent' is neither a file nor a run"),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2(

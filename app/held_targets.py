@@ -1,0 +1,52 @@
+"""How well a closed loop has held its targets, as the operator or a script wants to read it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+if TYPE_CHECKING:
+    from control.tracking import TargetResult
+
+
+def report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_json: bool) -> None:
+    """Prints one line a target, or JSON."""
+    from dataclasses import asdict
+
+    if as_json:
+        worst = max((abs(r.final_error_in) for r in results), default=float("nan"))
+        document = {
+            "run": str(folder),
+            "targets": [asdict(result) for result in results],
+            "worst_final_error_percent": 100.0 * worst / travel_in,
+        }
+        click.echo(json.dumps(document))
+        return
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table(title="final error = mean over the last quarter of each hold")
+    for heading in (
+        "target [in]",
+        "position [in]",
+        "error [in]",
+        "error [% of travel]",
+        "swing [% of travel]",
+        "settled [s]",
+    ):
+        table.add_column(heading, justify="right")
+    for r in results:
+        table.add_row(
+            f"{r.target_in:.4f}",
+            f"{r.final_in:.4f}",
+            f"{r.final_error_in:+.4f}",
+            f"{100 * r.final_error_in / travel_in:+.2f}",
+            f"{100 * r.swing_in / travel_in:.2f}",
+            "never" if r.settled_s is None else f"{r.settled_s:.1f}",
+        )
+    Console().print(table)
+    click.echo(f"the valve is at its safe command; record: {folder}")
