@@ -6,7 +6,6 @@ a `click.Command`; the first line of its docstring is its short help. Nothing el
 
 from __future__ import annotations
 
-import ast
 import os
 import sys
 import traceback
@@ -43,9 +42,8 @@ class LazyGroup(click.Group):
 
 
 def _short_help(name: str) -> str:
-    source = (COMMANDS / f"{name.replace('-', '_')}.py").read_text(encoding="utf-8")
-    doc = ast.get_docstring(ast.parse(source)) or ""
-    return doc.partition("\n")[0]
+    with (COMMANDS / f"{name.replace('-', '_')}.py").open(encoding="utf-8") as source:
+        return source.readline().strip().strip('"')
 
 
 @click.group(cls=LazyGroup, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 120})
