@@ -55,13 +55,13 @@ class Belief:
         """The pressure at which the edge on this side (+1 closing, -1 opening) holds the play output there."""
         return (self.inside.a1 if side > 0 else self.inside.a2) + position_in / self.compliance
 
-    def with_edges(self, a1: float, a2: float, doubt_1_psi: float, doubt_2_psi: float) -> Belief:
-        """The same belief with these edges [psi], which have nothing to do with what the rest is believed to be."""
+    def with_numbers(self, known: Belief) -> Belief:
+        """The same belief with another's edges and compliance, which have nothing to do with what the rest is."""
         cov = _square(self.spread).copy()
-        for place, doubt_psi in ((A1, doubt_1_psi), (A2, doubt_2_psi)):
-            cov[place], cov[:, place] = 0.0, 0.0
-            cov[place, place] = doubt_psi**2
-        return replace(self, inside=replace(self.inside, a1=a1, a2=a2), spread=tuple(cov.ravel()))
+        cov[A1:, :] = cov[:, A1:] = 0.0
+        cov[A1:, A1:] = _square(known.spread)[A1:, A1:]
+        inside = replace(self.inside, a1=known.inside.a1, a2=known.inside.a2)
+        return replace(self, inside=inside, compliance=known.compliance, spread=tuple(cov.ravel()))
 
     def edge_doubt_in(self, side: int) -> float:
         """How far off the play output may be that is put somewhere by the edge of this side [in]."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass, replace
+from dataclasses import dataclass, replace
 
 from control.controller import Law, Seen
 from control.observer import Inside
@@ -13,33 +13,24 @@ GIVEN_UP = 99  # turns after which a target is left alone
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
-    """Both edges when they were last known well [psi], and their standard deviations then [psi]."""
-
-    a1: float
-    a2: float
-    doubt_1: float
-    doubt_2: float
-
-
-@dataclass(frozen=True, slots=True)
 class BrakeState:
     """The belief for the next reading; `drive` is +1 closing, -1 opening, 0 settling; the aim [psi], and for how long
-    it has not changed [s]; what is remembered of the edges; whether the valve sticks; how often it has been turned back
-    or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how long the drive
-    has lasted [s]."""
+    it has not changed [s]; the belief when the edges were last known well; whether the valve sticks; how often it has
+    been turned back or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how
+    long the drive has lasted [s]; edge [psi] and play output [in] when the pushing began."""
 
     belief: Belief
     target_in: float
     aim_psi: float
     drive: int = 0
     quiet_s: float = 0.0
-    found: Found | None = None
+    found: Belief | None = None
     sticks: bool = False
     turns: int = 0
     pushing: bool = False
     pushes: int = 0
     driven_s: float = 0.0
+    mark: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -51,10 +42,10 @@ class Brake(Law[BrakeState]):
     Settling: a miss of the play output is answered when it is larger than `tolerance_in` and `sure` standard deviations
     of what is known; then the pressure retreats by `retreat_psi` from the edge, where noise, drift of the converter and
     small leaks move nothing. Sticking: where the pressure has gone `grip_psi` and `surely` standard deviations beyond
-    an edge and nothing has moved, small pushes are given up; from then on every correction is a stroke of `stroke_psi`
-    beyond the edge and back, which slides from start to end; at most `strokes` per target, and none that takes longer
-    than `stroke_s`: what is left then, friction does not permit to take away. Each time of turning back makes it more
-    tolerant.
+    an edge and nothing has moved, or on and on without the play output coming along, small pushes are given up, and
+    what they seemed to teach is forgotten; from then on every correction is a stroke of `stroke_psi` beyond the edge
+    and back, which slides from start to end; at most `strokes` per target, and none that takes longer than `stroke_s`:
+    what is left then, friction does not permit to take away. Each time of turning back makes it more tolerant.
     """
 
     tolerance_in: float = 0.0007
@@ -62,12 +53,12 @@ class Brake(Law[BrakeState]):
     band_in: float = 0.0028
     again_in: float = 0.005
     short_in: float = 0.0005
-    patience_s: float = 3.0
+    patience_s: float = 2.2
     retreat_psi: float = 0.4
     grip_psi: float = 0.04
     surely: float = 2.5
     stroke_psi: float = 0.45
-    strokes: float = 3.0
+    strokes: float = 6.0
     stroke_s: float = 1.5
 
     def start(self, seen: Seen, target_in: float) -> BrakeState:
@@ -87,11 +78,11 @@ class Brake(Law[BrakeState]):
     def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
         stroke = state.sticks and turns > 0
-        aim_psi, drive = self._driven(soon, state.target_in, drive, dt_s, stroke and not state.drive)
+        aim_psi, drive = self._driven(soon, state, drive, dt_s, stroke and not state.drive)
         after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False)
         if stroke and state.driven_s > self.stroke_s:  # nothing moves: what it seemed to teach is forgotten
             return replace(after, drive=0, turns=GIVEN_UP, belief=_with_edges(state.belief, state.found))
-        return replace(after, found=_found(soon) if not drive else state.found if stroke else None)
+        return replace(after, found=soon if not drive else state.found if stroke else None)
 
     def _settling(self, state: BrakeState, soon: Belief) -> BrakeState:
         target_in, pushes, was_pushing = state.target_in, state.pushes, state.pushing
@@ -103,8 +94,9 @@ class Brake(Law[BrakeState]):
             return replace(state, aim_psi=self._parked(state, soon))
         pushes = side if side * pushes < 0 else pushes + side * (not was_pushing)
         turns = state.turns + (0 if self._touches(soon, side) else 1)
+        mark = state.mark if abs(pushes) > 2 else (soon.edge_psi(soon.inside.w, side), soon.inside.w)
         aim_psi = self._push_psi(soon, target_in, side, abs(pushes))
-        return replace(state, aim_psi=aim_psi, pushing=True, pushes=pushes, turns=turns)
+        return replace(state, aim_psi=aim_psi, pushing=True, pushes=pushes, turns=turns, mark=mark)
 
     @property
     def _filter(self) -> PlayFilter:
@@ -125,15 +117,21 @@ class Brake(Law[BrakeState]):
         if state.sticks or state.drive or state.found is None:
             return state, soon
         rest_psi, was = soon.inside.w / soon.compliance, state.found
-        closing_psi = soon.inside.p - was.a1 - rest_psi - self.surely * was.doubt_1
-        opening_psi = was.a2 + rest_psi - soon.inside.p - self.surely * was.doubt_2
-        if max(closing_psi, opening_psi) > max(self.grip_psi, 7.0 * soon.noise_psi):
+        closing_psi = soon.inside.p - was.inside.a1 - rest_psi - self.surely * _doubt_psi(was, 1)
+        opening_psi = was.inside.a2 + rest_psi - soon.inside.p - self.surely * _doubt_psi(was, -1)
+        enough_psi = max(self.grip_psi, 7.0 * soon.noise_psi)
+        if max(closing_psi, opening_psi) > enough_psi or self._in_vain(state, soon, enough_psi):
             belief = _with_edges(state.belief, was)
             return replace(state, sticks=True, turns=0, belief=belief), _with_edges(soon, was)
-        now = _found(soon)
-        better = now.doubt_1 + now.doubt_2 < 0.5 * (was.doubt_1 + was.doubt_2)
+        now_psi, was_psi = (_doubt_psi(b, 1) + _doubt_psi(b, -1) for b in (soon, was))
         calm = state.quiet_s > 1.5 and abs(state.pushes) < 2
-        return (replace(state, found=now) if better and calm else state), soon
+        return (replace(state, found=soon) if now_psi < 0.5 * was_psi and calm else state), soon
+
+    def _in_vain(self, state: BrakeState, soon: Belief, enough_psi: float) -> bool:
+        """Whether pushing the same way again and again has taken the pressure so far, and the play output nowhere."""
+        way = _sign(state.pushes)
+        went_psi, went_in = way * (soon.inside.p - state.mark[0]), way * (soon.inside.w - state.mark[1])
+        return abs(state.pushes) > 3 and went_psi > 1.5 * enough_psi and went_in < 0.3 * soon.compliance * went_psi
 
     def _begun(self, state: BrakeState, soon: Belief, fresh: bool) -> int:
         """The way to drive, 0 for none: to a new target, back to one that was missed, or as a stroke."""
@@ -151,9 +149,11 @@ class Brake(Law[BrakeState]):
         stroke = state.sticks and state.quiet_s > self.patience_s and state.turns < self.strokes
         return _sign(off_in) if stroke and abs(off_in) > enough_in else 0
 
-    def _driven(self, soon: Belief, target_in: float, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
-        """The aim of the next tick [psi], and whether the drive goes on after it."""
-        x, edge_in = soon.inside.x, min(self.short_in + 0.7 * soon.edge_doubt_in(-drive), 0.002)
+    def _driven(self, soon: Belief, state: BrakeState, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
+        """The aim of the next tick [psi], and whether the drive goes on after it. It brakes a little short, because
+        pushing on is cheaper than turning back; a valve that sticks cannot be pushed on."""
+        x, target_in = soon.inside.x, state.target_in
+        edge_in = 0.0 if state.sticks else min(self.short_in + 0.7 * soon.edge_doubt_in(-drive), 0.002)
         brake_psi = soon.edge_psi(target_in + drive * edge_in, -drive)
         full_psi = soon.edge_psi(x + 1.1 * drive * self.design.rate_limit * self.design.tau_s, drive)
 
@@ -221,16 +221,16 @@ class Brake(Law[BrakeState]):
         """The command that brings the pressure to the aim within a tick, if the supply can."""
         away_psi, tau_s = aim_psi - inside.p, self.design.ep_tau_s
         lead = min(1.0 / (1.0 - math.exp(-dt_s / tau_s)), 3.5) if tau_s > 0.0 else 1.0
+        lead *= 0.96 if inside.line.ticks > 0.0 else 1.0  # a dead time is known to a part of a tick: not beyond the aim
         return self.clamp(inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 else 1.0) * away_psi))
 
 
-def _found(soon: Belief) -> Found:
-    doubts = (soon.edge_doubt_in(side) / soon.compliance for side in (1, -1))
-    return Found(soon.inside.a1, soon.inside.a2, *doubts)
+def _doubt_psi(belief: Belief, side: int) -> float:
+    return belief.edge_doubt_in(side) / belief.compliance
 
 
-def _with_edges(belief: Belief, found: Found | None) -> Belief:
-    return belief if found is None else belief.with_edges(*astuple(found))
+def _with_edges(belief: Belief, found: Belief | None) -> Belief:
+    return belief if found is None else belief.with_numbers(found)
 
 
 def _sign(value: float) -> int:

@@ -57,3 +57,12 @@ def test_it_notices_sticking_and_only_where_there_is_some() -> None:
     targets = [0.17, 0.39, 0.28, 0.31, 0.3, 0.5]
     assert hold(targets, effects={"stiction": 0.3})[0].sticks
     assert not hold(targets)[0].sticks
+
+
+@pytest.mark.parametrize("breakaway_psi", [0.15, 0.3])
+def test_pushing_in_vain_leaves_no_trace(breakaway_psi: float) -> None:
+    """Once it knows that the valve sticks, it lands by strokes, and the compliance is still the valve's."""
+    state, off = hold([0.17, 0.39, 0.28, 0.4, 0.1, 0.3], effects={"stiction": breakaway_psi})
+    assert state.sticks
+    assert state.belief.compliance == pytest.approx(DESIGN.compliance, rel=0.03)
+    assert np.abs(off[2:, 300:].mean(axis=1)).max() < 0.3

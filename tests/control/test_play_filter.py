@@ -72,12 +72,18 @@ def test_the_upper_stop_is_learned(travel: float) -> None:
     assert watch(3, stairs=RUNS, travel=travel)[0].travel == pytest.approx(travel, rel=0.003)
 
 
-def test_new_edges_have_nothing_to_do_with_the_rest() -> None:
-    belief, _ = watch(1)
-    moved = belief.with_edges(9.0, 5.5, 0.02, 0.03)
-    assert (moved.inside.a1, moved.inside.a2) == (9.0, 5.5)
-    assert moved.edge_doubt_in(1) == pytest.approx(0.02 * belief.compliance, rel=0.2)
-    assert moved.doubt_in == belief.doubt_in
+def test_numbers_of_another_belief_have_nothing_to_do_with_the_rest() -> None:
+    belief, other = watch(1)[0], watch(2, a1=9.0, a2=5.5)[0]
+    moved = belief.with_numbers(other)
+    assert (moved.inside.a1, moved.inside.a2, moved.compliance) == (
+        other.inside.a1,
+        other.inside.a2,
+        other.compliance,
+    )
+    assert (moved.inside.w, moved.doubt_in) == (belief.inside.w, belief.doubt_in)
+    cov = np.array(moved.spread).reshape(7, 7)
+    assert cov[4:, 4:] == pytest.approx(np.array(other.spread).reshape(7, 7)[4:, 4:])
+    assert not cov[:4, 4:].any()
 
 
 def test_a_rest_on_a_stop_teaches_nothing() -> None:
