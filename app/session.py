@@ -60,12 +60,18 @@ class Session:
 def bench_options(command: F) -> F:
     """`--port --profile --physics --seed --effect --real-time`: which bench. The same words in every verb."""
     options = (
-        click.option("--port", metavar="PORT", help="Serial port, or tcp://HOST:PORT. Without it: the virtual valve."),
+        click.option(
+            "--port", metavar="PORT", help="Serial port, tcp:// or rtu+tcp://HOST:PORT.  [default: virtual valve]"
+        ),
         click.option("--profile", metavar="FILE|NAME", help="Bench profile.  [default: virtual]"),
         click.option("--physics", metavar="NAME", help="Plant of the virtual valve.  [default: thesis]"),
         click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all chance."),
         click.option(
-            "--effect", "effects", metavar="NAME=SIZE", multiple=True, help="Imperfection of the virtual valve."
+            "--effect",
+            "effects",
+            metavar="NAME=SIZE",
+            multiple=True,
+            help="Imperfection of the virtual valve, stiction=0.4.",
         ),
         click.option("--real-time", is_flag=True, help="Let the virtual valve live in real time."),
     )
@@ -197,6 +203,7 @@ def _served(
     profile: Profile, plant: ValvePhysics, said: dict[str, object], real_time: bool, sealed: Sealed | None = None
 ) -> Iterator[Session]:
     """Puts a plant behind Modbus frames on a pseudo-terminal and opens the bench there."""
+    from app.slow import COMPILING, say_if_slow
     from hal.clock import RealClock, SteppedClock
     from hal.modbus_bench import ModbusBench
     from hal.safety import SafeBench
@@ -204,7 +211,9 @@ def _served(
 
     clock: Clock = RealClock() if real_time else SteppedClock()
     said = {**said, "time": "real" if real_time else "stepped"}
-    with VirtualDevice(profile, plant, clock) as device:
+    with say_if_slow(COMPILING):
+        served = VirtualDevice(profile, plant, clock)
+    with served as device:
         # A pseudo-terminal has no bits on a wire, so there is no silence to keep between frames.
         inner = ModbusBench(profile, device.port, clock, pacing="none", margin_s=2.0)
         with SafeBench(inner, profile.limits, clock) as bench:

@@ -44,14 +44,17 @@ def open_to_look(
             yield bench, clock
         return
     from app.session import _parse_effects as parse_effects
+    from app.slow import COMPILING, say_if_slow
     from sim_device.physics.catalog import make_physics
     from sim_device.server import VirtualDevice
 
     clock = SteppedClock() if stepped else RealClock()
     options = {"effects": parse_effects(effects)} if effects else {}
     name = physics or ("positioner" if found.command_unit == "percent" else "thesis")
+    with say_if_slow(COMPILING):
+        served = VirtualDevice(found, make_physics(name, seed, **options), clock)
     with (
-        VirtualDevice(found, make_physics(name, seed, **options), clock) as device,
+        served as device,
         ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,
     ):
         yield bench, clock

@@ -22,7 +22,7 @@ from hal.port import PortName
 from hal.profile import Serial
 from hal.reply import Reply
 from hal.stats import BusStats
-from hal.transport import make_transport
+from hal.transport import make_transport, parity_of
 
 _OPEN_S = 3.0
 
@@ -126,7 +126,7 @@ class PymodbusLine:
             self._client = AsyncModbusSerialClient(
                 self._port.text,
                 baudrate=s.baud,
-                parity=s.parity,
+                parity=parity_of(self._port.text, s),
                 stopbits=s.stop_bits,
                 retries=0,
                 reconnect_delay=0,

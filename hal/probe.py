@@ -53,7 +53,7 @@ def probe(
     """
     clock = clock or RealClock()
     for serial in settings:
-        said(f"{serial.baud} 8{serial.parity}{serial.stop_bits}")
+        said(f"trying {serial.baud} 8{serial.parity}{serial.stop_bits}")
         line = RtuLine(make_transport(port, serial), serial, clock, name=port.text)
         try:
             line.open()

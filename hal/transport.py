@@ -8,7 +8,9 @@ import math
 import os
 import select
 import socket
+import sys
 import termios
+from pathlib import Path
 from typing import Protocol
 
 from hal.errors import PortFault
@@ -98,7 +100,8 @@ class SerialTransport(FdTransport):
 
         s = self._settings
         try:
-            port = serial.Serial(self.name, s.baud, parity=s.parity, stopbits=s.stop_bits, timeout=0, exclusive=True)
+            parity = parity_of(self.name, s)
+            port = serial.Serial(self.name, s.baud, parity=parity, stopbits=s.stop_bits, timeout=0, exclusive=True)
         except termios.error as error:
             line = f"{s.baud} 8{s.parity}{s.stop_bits}"
             raise SettingRefused(f"port {self.name} cannot be set to {line}; its driver refuses that") from error
@@ -145,6 +148,18 @@ class TcpTransport(FdTransport):
         if self._socket is not None:
             self._socket.close()
             self._socket = None
+
+
+def parity_of(name: str, settings: Serial) -> str:
+    """The parity to open the port with: none on a pseudo-terminal, which has no bits and cannot be set to any.
+
+    Source: Linux, admin-guide/devices: character devices 136 to 143 are the slaves of pseudo-terminals.
+    """
+    try:
+        pseudo = sys.platform == "linux" and 136 <= os.major(Path(name).stat().st_rdev) <= 143
+    except OSError:
+        pseudo = False
+    return "N" if pseudo else settings.parity
 
 
 def _why_not(name: str, error: Exception) -> str:

@@ -63,6 +63,7 @@ def command(
 
     It prints the port that a master opens; the registers lie where the profile puts them (docs/register-map.md).
     """
+    from app.slow import COMPILING, say_if_slow
     from hal.profile import load_profile
     from sim_device.faults import parse_faults
     from sim_device.server import VirtualDevice
@@ -72,16 +73,17 @@ def command(
         valve, said = _sealed(sealed, commitment, bool(physics or effects))
     else:
         valve, said = _open(physics or _usual(profile.command_unit), effects, seed)
-    device = VirtualDevice(
-        profile,
-        valve,
-        _clock(time_kind),
-        link=port_link,
-        tcp=tcp,
-        faults=parse_faults(faults, seed=seed, timeout_s=fault_timeout),
-        pace_baud=pace,
-        options=_options(refresh, time_kind),
-    )
+    with say_if_slow(COMPILING):
+        device = VirtualDevice(
+            profile,
+            valve,
+            _clock(time_kind),
+            link=port_link,
+            tcp=tcp,
+            faults=parse_faults(faults, seed=seed, timeout_s=fault_timeout),
+            pace_baud=pace,
+            options=_options(refresh, time_kind),
+        )
     _serve(device, said | {"profile": profile_name, "units": sorted(device.units)}, as_json)
 
 

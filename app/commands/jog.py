@@ -10,7 +10,7 @@ from app.session import bench_options
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
-@click.argument("steps", nargs=-1, metavar="STEP...")
+@click.argument("steps", nargs=-1, metavar="[STEP]...")
 @bench_options
 @click.option("--dwell", "dwell_s", type=click.FloatRange(min=0.1), default=3.0, show_default=True, metavar="S",
               help="Time at each command [s].")  # fmt: skip

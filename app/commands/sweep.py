@@ -26,10 +26,22 @@ if TYPE_CHECKING:
 @bench_options
 @sealed_option
 @record_options
-@click.option("--set", "settings", metavar="KEY=VALUE", multiple=True, help="Change a number of the experiment.")
+@click.option(
+    "--set",
+    "settings",
+    metavar="KEY=VALUE",
+    multiple=True,
+    help="Change a number of the experiment; --write shows all of them.",
+)
 @click.option("--period", "period_s", type=float, metavar="S", help="Time between two samples [s].")
 @click.option("--resume", metavar="RUN", type=click.Path(path_type=Path), help="Go on with a sweep that was stopped.")
-@click.option("--write", "write_to", metavar="FILE.toml", type=click.Path(path_type=Path), help="Only write the file.")
+@click.option(
+    "--write",
+    "write_to",
+    metavar="FILE.toml",
+    type=click.Path(path_type=Path),
+    help="Only write the experiment's file.",
+)
 @click.option("--dry-run", is_flag=True, help="Show duration, range and a sketch; touch nothing.")
 @click.option("--json", "as_json", is_flag=True, help="Print the outcome as JSON.")
 def command(

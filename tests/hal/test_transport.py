@@ -9,7 +9,7 @@ import pytest
 from hal.errors import PortFault
 from hal.port import parse_port
 from hal.profile import Serial
-from hal.transport import SerialTransport, TcpTransport, make_transport
+from hal.transport import SerialTransport, TcpTransport, make_transport, parity_of
 
 
 @pytest.fixture
@@ -33,6 +33,22 @@ def test_bytes_pass_as_they_are_in_both_directions(pty) -> None:
     assert line.read(0.0) == b""
     line.close()
     line.close()
+
+
+@pytest.mark.parametrize("parity", ["N", "E", "O"])
+@pytest.mark.parametrize("stop_bits", [1, 2])
+def test_a_profile_with_parity_can_be_tried_on_a_pseudo_terminal(pty, parity, stop_bits) -> None:
+    master, name = pty
+    line = SerialTransport(name, Serial(parity=parity, stop_bits=stop_bits))
+    line.open()
+    line.write(b"\xff")
+    assert os.read(master, 9) == b"\xff"
+    line.close()
+
+
+def test_parity_is_kept_on_everything_else() -> None:
+    assert parity_of(os.devnull, Serial(parity="E")) == "E"
+    assert parity_of("/dev/absent", Serial(parity="O")) == "O"
 
 
 def test_a_port_belongs_to_one_program(pty) -> None:
