@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.stranger.catalog import EFFECT_FORMS, by_cause, related
+from bench.stranger.distinct import own_ratio, plain_directions
 from bench.stranger.excite import Session, open_loop
 from bench.stranger.form import Form
 from bench.stranger.noise import POSITION_IN, Noise
@@ -20,11 +21,12 @@ KINDS = {"none": 0.2, "effect": 0.4, "parameter": 0.1, "effects": 0.2, "outsider
 #: How much a cause shows: RMS of what it changes in the noise-free reading, over the sensor's noise.
 GRADES = {"small": (1.5, 3.0), "medium": (3.0, 10.0), "large": (10.0, 40.0)}
 _FORMS = {"effect": EFFECT_FORMS, "effects": EFFECT_FORMS, "parameter": PARAMETER_FORMS, "outsider": OUTSIDERS}
+LEAST_OWN = 0.5  # of the sensor's noise, RMS: below, the record holds nothing that would tell the cause
 _TRIES, _HALVINGS, _NEAR = 6, 12, 1.25
 
 
 class Cause(NamedTuple):
-    """One true cause; `ratio` is the RMS that it causes alone over the sensor's noise."""
+    """One true cause; `ratio` is the RMS that it causes alone over the sensor's noise, `own` what only it can."""
 
     name: str
     form: str
@@ -33,6 +35,7 @@ class Cause(NamedTuple):
     size: float
     unit: str
     ratio: float
+    own: float
 
 
 class Case(NamedTuple):
@@ -55,13 +58,17 @@ class _Bench(NamedTuple):
 
     session: Session
     healthy_in: NDArray[np.float64]
+    plain: NDArray[np.float64]
     seed: list[int]
+
+    def changed_in(self, form: Form, size: float, shape: int) -> NDArray[np.float64]:
+        """What the form changes in the reading [in], shape (rows,)."""
+        valve = form.build(HEALTHY, size, np.random.default_rng(shape))
+        return noise_free_reading(valve, self.session, self.seed) - self.healthy_in
 
     def ratio(self, form: Form, size: float, shape: int) -> float:
         """RMS of what the form changes in the reading, over the sensor's noise."""
-        valve = form.build(HEALTHY, size, np.random.default_rng(shape))
-        changed = noise_free_reading(valve, self.session, self.seed) - self.healthy_in
-        return float(np.sqrt(np.mean(changed**2))) / POSITION_IN
+        return float(np.sqrt(np.mean(self.changed_in(form, size, shape) ** 2))) / POSITION_IN
 
 
 def sized(bench: _Bench, form: Form, shape: int, wanted: float) -> tuple[float, float]:
@@ -86,8 +93,9 @@ def _cause(bench: _Bench, forms: list[Form], rng: np.random.Generator) -> tuple[
         shape, (low, high) = int(rng.integers(2**31)), GRADES[grade]
         wanted = float(np.exp(rng.uniform(np.log(low), np.log(high))))
         size, ratio = sized(bench, form, shape, wanted)
-        if low / _NEAR <= ratio <= high * _NEAR:
-            return Cause(form.cause, form.form, form.stage, grade, size, form.unit, ratio), form, shape
+        own = own_ratio(form, bench.changed_in(form, size, shape), bench.plain)
+        if low / _NEAR <= ratio <= high * _NEAR and own >= LEAST_OWN:
+            return Cause(form.cause, form.form, form.stage, grade, size, form.unit, ratio, own), form, shape
     return None
 
 
@@ -112,7 +120,7 @@ def draw_case(seed: int, index: int, kind: str | None = None, rough: bool = Fals
     rng = np.random.default_rng(key)
     drawn = str(rng.choice(list(KINDS), p=list(KINDS.values())))
     session = open_loop(rng)
-    bench = _Bench(session, noise_free_reading(HEALTHY, session, key), key)
+    bench = _Bench(session, noise_free_reading(HEALTHY, session, key), plain_directions(session, key), key)
     causes = _causes(bench, kind or drawn, rng)
     valve = HEALTHY
     for cause, form, shape in causes:

@@ -7,7 +7,7 @@ import numpy as np
 from bench.stranger.form import Form, ep, sign
 from bench.stranger.valve import Valve
 
-_HIGHEST_PSI = 14.0  # no command of a bench goes higher
+HIGHEST_PSI = 14.0  # no command of a bench goes higher
 
 
 def dead_time(valve: Valve, size: float, _rng: np.random.Generator) -> Valve:
@@ -67,15 +67,15 @@ def fill_limit(valve: Valve, size: float, _rng: np.random.Generator) -> Valve:
 
 def regulated_supply(valve: Valve, size: float, _rng: np.random.Generator) -> Valve:
     """Size is what is missing below the highest command [psi]."""
-    return ep(valve, target_ceiling_psi=_HIGHEST_PSI - size)
+    return ep(valve, target_ceiling_psi=HIGHEST_PSI - size)
 
 
 def cut_off_supply(valve: Valve, size: float, _rng: np.random.Generator) -> Valve:
-    return ep(valve, pressure_ceiling_psi=_HIGHEST_PSI - size)
+    return ep(valve, pressure_ceiling_psi=HIGHEST_PSI - size)
 
 
 def drooping_supply(valve: Valve, size: float, _rng: np.random.Generator) -> Valve:
-    return ep(valve, soft_ceiling_psi=_HIGHEST_PSI + 3.0 - size if size > 0.0 else 1e9)
+    return ep(valve, soft_ceiling_psi=HIGHEST_PSI + 3.0 - size if size > 0.0 else 1e9)
 
 
 EP_FORMS = (

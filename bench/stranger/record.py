@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from bench.stranger.excite import REST_PSI, Pi, Session, targets
 from bench.stranger.noise import QUIET, Noise, steps_per_row, wander_psi
-from bench.stranger.plant import Plant, clock_s, weather_table
+from bench.stranger.plant import Plant, clock_s, noise_free, weather_table
 from bench.stranger.reader import Reader
-from bench.stranger.valve import TARGET_PSI, Valve
+from bench.stranger.valve import TARGET_PSI, Daq, Valve
 
 Floats = NDArray[np.float64]
 
@@ -64,6 +64,9 @@ def run_closed(valve: Valve, noise: Noise, rng: np.random.Generator, seed: list[
 
 def noise_free_reading(valve: Valve, session: Session, seed: list[int]) -> Floats:
     """The recorded position readings [in] without noise, with everything that the valve and its acquisition do."""
+    if valve.daq == Daq():
+        steps = steps_per_row(QUIET, session.commands_psi.size, np.random.default_rng(0))
+        return noise_free(valve, session.commands_psi, steps)[1][session.skipped :]
     return run_open(valve, session, QUIET, seed).position_in[session.skipped :]
 
 

@@ -45,7 +45,8 @@ def _rate(name: str, lines: Iterable[Line], hit: Callable[[Line], bool | None]) 
 
 def _miss(line: Line) -> str:
     truth = ", ".join(
-        f"{one['name']}/{one['form']} {one['grade']} {one['size']:.3g} {one['unit']} (x{one['ratio']:.1f})"
+        f"{one['name']}/{one['form']} {one['grade']} {one['size']:.3g} {one['unit']}"
+        f" (x{one['ratio']:.1f}, own {one['own']:.1f})"
         for one in line["label"]["causes"]
     )
     named = ", ".join(f"{one['name']} {one['probability']:.2f}" for one in line["answer"]["causes"])

@@ -48,7 +48,8 @@ def _simulated_in(model: Path, closed: Path, out: Path) -> NDArray[np.float64]:
 def closure(case: Case, folder: Path, noise: Noise) -> dict[str, float | None]:
     """How much of the gap of a closed-loop record that nobody saw the updated model closes: RMS [in] and share.
 
-    The share is None where the design itself is hardly off (as in the interface, 1.05 times the noise).
+    The share is None where the design itself is hardly off (as in the interface, 1.05 times the noise), and where
+    readings are false at random: no model can say when.
     """
     rows = run_closed(case.valve, noise, np.random.default_rng([*case.seed, 20]), case.seed)
     path = folder / "closed.csv"
@@ -56,8 +57,8 @@ def closure(case: Case, folder: Path, noise: Noise) -> dict[str, float | None]:
     after_in = _rms(_simulated_in(folder / "out" / "model.toml", path, folder / "sim.csv") - rows.position_in)
     design = _design_in(rows.command_psi)
     before_in, floor_in = _rms(design - rows.position_in), noise.position_in
-    share = None
-    if before_in > 1.05 * floor_in:
+    share, random = None, any(cause.name == "sensor_dropouts" for cause in case.causes)
+    if before_in > 1.05 * floor_in and not random:
         share = 1.0 - max(after_in**2 - floor_in**2, 0.0) / (before_in**2 - floor_in**2)
     return {"before_in": before_in, "after_in": after_in, "share": share}
 
