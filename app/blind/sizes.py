@@ -41,6 +41,11 @@ def _part_of_travel(size: float, design: DesignModel) -> float:
     return size / design.travel
 
 
+def _of_even_widths(size: float, _design: DesignModel) -> float:
+    """Seven widths from -size to size have the standard deviation of an even spread that is wider by sqrt(8 / 6)."""
+    return size * (8.0 / 6.0) ** 0.5
+
+
 def _of_two_lags(size: float, _design: DesignModel) -> float:
     """The exhaust is (1 + size) times as slow as the filling, or the filling (1 - size) times as the exhaust."""
     return -size / (2.0 + abs(size))
@@ -54,7 +59,10 @@ _EFFECTS: Mapping[str, tuple[str, Truth]] = {
     "sensor_lag": ("lag", _same),
     "stale_samples": ("period", _same),
     "sensor_quantization": ("step", _same),
-    "sensor_dropouts": ("rate", _same),
+    # a reading that falls to zero is false only where the stem is not
+    "sensor_dropouts/full_scale": ("rate", _same),
+    "sensor_dropouts/spike": ("rate", _same),
+    "sensor_dropouts/default": ("rate", _same),
     "linkage_lost_motion/default": ("play", _same),
     "linkage_lost_motion/free": ("play", _same),
     "ep_calibration/zero": ("zero", _same),
@@ -62,7 +70,7 @@ _EFFECTS: Mapping[str, tuple[str, Truth]] = {
     "lvdt_calibration/gain": ("gain", _same),
     "lvdt_calibration/zero": ("zero", _of_travel),
     "reduced_travel": ("missing", _part_of_travel),
-    "distributed_hysteresis/even": ("spread", _same),
+    "distributed_hysteresis/even": ("spread", _of_even_widths),
     "asymmetric_damping/tau": ("asymmetry", _same),
     "fill_exhaust_asymmetry/tau": ("asymmetry", _of_two_lags),
 }

@@ -33,21 +33,18 @@ from twin.slots import (
 #: First pressure, step, closing and opening curve; and the spreads and weights of the elements.
 Tables = tuple[float, float, FloatArray, FloatArray]
 Plays = tuple[FloatArray, FloatArray]
-#: Over the stem's position, 0 .. travel: extra pressure (closing, opening), compliance relative to the design's; single
-#: points where the stem's position does not matter.
+#: Over the stem's position, 0 .. travel: extra pressure (closing, opening), relative compliance; single points: none.
 Bends = tuple[FloatArray, FloatArray, FloatArray]
 #: What the half deadband grows by (closing, opening), compliance relative to the design's.
 Grown = tuple[float, float, float]
-#: Stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck [s].
-State = tuple[float, float, float, bool, float, float, float, float]
 
 _SAME = 1e-9
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
-    """Linear interpolation in a uniform table, extended by its end slopes."""
-    q = (p - p_first) / p_step
+def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
+    """Linear interpolation at `p` in a table, extended by its end slopes; `grid`: first point, points per unit."""
+    q = (p - grid[0]) * grid[1]
     i = min(max(int(q), 0), table.size - 2)
     value: float = table[i] + (q - i) * (table[i + 1] - table[i])
     return value
@@ -62,10 +59,10 @@ def _decays(h: float, c: FloatArray, lags: FloatArray) -> None:
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _toward(x: float, w_a: float, w_b: float, lag: FloatArray) -> float:
+def _toward(x: float, w_a: float, w_b: float, decay: float, reach: float) -> float:
     """Exact step of a lag for an input linear from w_a to w_b."""
-    slope_tau = (w_b - w_a) * lag[1]
-    new: float = w_b - slope_tau + (x - w_a + slope_tau) * lag[0]
+    slope_tau = (w_b - w_a) * reach
+    new: float = w_b - slope_tau + (x - w_a + slope_tau) * decay
     return new
 
 
@@ -82,116 +79,122 @@ def _jumps(e: float, free: float, held: float) -> float:
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _held(
-    q: float, band: Grown, extra: tuple[float, float], inside: bool, stops: FloatArray, tables: Tables
-) -> tuple[float, float]:
-    """Between which two positions an element stays at pressure `q` that needs `extra` (closing, opening) to start."""
-    p_first, p_step, closing, opening = tables
-    bottom = band[2] * _look_up(q - band[0] - extra[0], p_first, p_step, closing)
-    top = band[2] * _look_up(q + band[1] + extra[1], p_first, p_step, opening)
-    if inside:  # what the stops keep the play from does not pull at it
-        free_bottom = band[2] * _look_up(q - band[0], p_first, p_step, closing)
-        free_top = band[2] * _look_up(q + band[1], p_first, p_step, opening)
-        bottom += min(stops[1], max(stops[0], free_bottom)) - free_bottom
-        top += min(stops[1], max(stops[0], free_top)) - free_top
-    return bottom, top
+def _unheld(free: float, held: float, inside: bool, ends: tuple[float, float]) -> float:
+    """Where the breakaway holds an element, if what the stops keep the play from does not pull at it."""
+    return held + min(ends[1], max(ends[0], free)) - free if inside else held
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _play_step(
-    q: float,
-    grown: Grown,
+def _element(
+    e: float,
+    down: float,
+    up: float,
+    softer: float,
     extra: tuple[float, float],
     modes: tuple[bool, bool],
-    stops: FloatArray,
-    tables: Tables,
-    plays: Plays,
-    elements: FloatArray,
+    ends: tuple[float, float],
+    grid: tuple[float, float],
+    closing: FloatArray,
+    opening: FloatArray,
 ) -> tuple[float, bool]:
-    """Moves the elements to pressure `q`; those that `extra` (closing, opening) holds stay.
+    """Where an element goes that closes at pressure `down` and opens at `up`, and whether it slipped.
 
-    `modes`: whether they jump, and whether only what lies inside the stops pulls. Returns their sum and whether any
-    slipped.
+    `extra`: what it takes to start (closing, opening). `modes`: whether it jumps, and whether only what lies inside
+    the stops pulls. `ends`: the stops. `grid`: first pressure and points per pressure of the curves.
     """
-    p_first, p_step, closing, opening = tables
-    w = 0.0
-    slipped = False
-    for j in range(elements.size):
-        e = elements[j]
-        band = (plays[0][j] + grown[0], plays[0][j] + grown[1], grown[2])
-        held = (e, e)
-        if extra[0] > 0.0 or extra[1] > 0.0:
-            held = _held(q, band, extra, modes[1], stops, tables)
-            if held[0] <= e <= held[1]:
-                w += plays[1][j] * e
-                continue
-        bottom = band[2] * _look_up(q - band[0], p_first, p_step, closing)
-        top = band[2] * _look_up(q + band[1], p_first, p_step, opening)
+    bottom, top = softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening)
+    if extra[0] > 0.0 or extra[1] > 0.0:
+        low = _unheld(bottom, softer * _curve_at(down - extra[0], grid, closing), modes[1], ends)
+        high = _unheld(top, softer * _curve_at(up + extra[1], grid, opening), modes[1], ends)
+        if low <= e <= high:
+            return e, False
         if modes[0] and extra[0] > 0.0:
-            bottom = _jumps(e, bottom, held[0]) if bottom > e else bottom
-            top = _jumps(e, top, held[1]) if top < e else top
-        slipped = True
-        e = max(stops[0], min(stops[1], max(bottom, min(top, e))))
-        elements[j] = e
-        w += plays[1][j] * e
-    return w, slipped
+            bottom = _jumps(e, bottom, low) if bottom > e else bottom
+            top = _jumps(e, top, high) if top < e else top
+    return max(ends[0], min(ends[1], max(bottom, min(top, e)))), True
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _half_band(wide: float, state: State, c: FloatArray, bends: Bends) -> Grown:
-    """What is added to the half deadband now, by time, wear, speed and where the stem is; and the compliance there."""
-    grown: float = wide + c[V_WEAR] * state[6]
+def _half_band(
+    wide: float, x: float, speed: float, c: FloatArray, closing: FloatArray, opening: FloatArray, softer: FloatArray
+) -> Grown:
+    """What is added to the half deadband now, by wear (in `wide`), speed and place; and the compliance there."""
+    grown = wide
     if c[V_STRIBECK] > 0.0:
-        grown += c[V_STRIBECK] * np.exp(-state[4] / c[V_STRIBECK_SPEED])
-    if bends[0].size == 1:
+        grown += c[V_STRIBECK] * np.exp(-speed / c[V_STRIBECK_SPEED])
+    if closing.size == 1:
         return grown, grown, 1.0
-    step = c[V_TRAVEL] / (bends[0].size - 1)
-    closing, opening = _look_up(state[0], 0.0, step, bends[0]), _look_up(state[0], 0.0, step, bends[1])
-    return grown + closing, grown - opening, _look_up(state[0], 0.0, step, bends[2])
+    grid = (0.0, (closing.size - 1) / c[V_TRAVEL])
+    return grown + _curve_at(x, grid, closing), grown - _curve_at(x, grid, opening), _curve_at(x, grid, softer)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _breakaway(state: State, c: FloatArray) -> tuple[float, float]:
+def _breakaway(stuck: bool, toward: float, rested: float, c: FloatArray) -> tuple[float, float]:
     """What it takes beyond sliding friction to close and to open now.
 
     A stem that moves passes rest before it can move the other way: there it has to break away again.
     """
     extra = c[V_BREAKAWAY]
     if c[V_AGING_S] > 0.0:
-        extra *= 1.0 - np.exp(-state[7] / c[V_AGING_S])
-    slides = 0.0 if state[3] else state[5]
+        extra *= 1.0 - np.exp(-rested / c[V_AGING_S])
+    slides = 0.0 if stuck else toward
     return 0.0 if slides > 0.0 else extra, 0.0 if slides < 0.0 else extra
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _bounded(x: float, new: float, h: float, c: FloatArray, stops: FloatArray) -> float:
-    """The stem after `h` seconds on its way from x to `new`, no faster than its rates and within its stops."""
-    slow = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
-    bounded: float = max(stops[2], min(stops[3], slow))
-    return bounded
-
-
-@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _move(
-    h: float, new_w: float, slipped: bool, c: FloatArray, stops: FloatArray, lags: FloatArray, state: State
-) -> State:
-    """The state after `h` seconds in which the stem moves toward the play output `new_w`."""
-    x, w, after, stuck, _, toward, travelled, rested = state
-    new_after = _toward(after, w, new_w, lags[2])
-    new = _bounded(x, _toward(x, after, new_after, lags[0 if after + new_after > 2.0 * x else 1]), h, c, stops)
+    h: float,
+    new_w: float,
+    slipped: bool,
+    c: FloatArray,
+    stops: FloatArray,
+    lags: FloatArray,
+    x: float,
+    w: float,
+    after: float,
+    stuck: bool,
+) -> tuple[float, float, bool]:
+    """Stem, lagged play output and whether it sticks, after `h` seconds in which it moves toward `new_w`."""
+    new_after = _toward(after, w, new_w, lags[2, 0], lags[2, 1])
+    way = 0 if after + new_after > 2.0 * x else 1  # a row of `lags` taken out would count references
+    new = _toward(x, after, new_after, lags[way, 0], lags[way, 1])
+    new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
+    new = max(stops[2], min(stops[3], new))
     if c[V_HELD] > 0.0:
         slipped = abs(new_after - x) > c[V_HELD]
         new = x if stuck and not slipped else new
-    speed = abs(new - x) / h
-    deciding = abs(new_w - w) / h if c[V_TARGET_STICKS] != 0.0 else speed
-    stuck = (stuck and not slipped) or deciding < c[V_STICK_SPEED]
-    rested = rested + h if stuck else 0.0
-    toward = new - x if new != x else toward
-    return new, new_w, new_after, stuck, speed, toward, travelled + abs(new - x), rested
+    deciding = abs(new_w - w) if c[V_TARGET_STICKS] != 0.0 else abs(new - x)
+    return new, new_after, (stuck and not slipped) or deciding < c[V_STICK_SPEED] * h
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def coupled_pass(
+def coupled_start(
+    force: float,
+    wide: float,
+    c: FloatArray,
+    stops: FloatArray,
+    tables: Tables,
+    plays: Plays,
+    bends: Bends,
+    start: tuple[float, float],
+) -> tuple[FloatArray, FloatArray]:
+    """State (see `coupled_steps`) and elements at rest; `start`: (x, w), `stops`: of the play, of the stem."""
+    grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
+    elements = np.full(plays[0].size, start[1])
+    x = max(stops[2], min(stops[3], start[0]))
+    more, less, softer = _half_band(wide, x, 0.0, c, bends[0], bends[1], bends[2])
+    w = 0.0
+    for j in range(elements.size):
+        down, up = force - plays[0][j] - more, force + plays[0][j] + less
+        elements[j], _ = _element(
+            elements[j], down, up, softer, (0.0, 0.0), (False, False), ends, grid, tables[2], tables[3]
+        )
+        w += plays[1][j] * elements[j]
+    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER]), elements
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def coupled_steps(
     time_s: FloatArray,
     offsets: np.ndarray,
     force: FloatArray,
@@ -201,30 +204,45 @@ def coupled_pass(
     tables: Tables,
     plays: Plays,
     bends: Bends,
-    start: tuple[float, float],
+    state: FloatArray,
+    elements: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem. `stops`: of the play, of the stem; `start`: (x, w)."""
-    elements = np.full(plays[0].size, start[1])
-    x = max(stops[2], min(stops[3], start[0]))
-    state = (x, start[1], start[1], True, 0.0, 0.0, 0.0, FOREVER)
-    grown = _half_band(widening[0], state, c, bends)
-    w, _ = _play_step(force[0], grown, (0.0, 0.0), (False, False), stops, tables, plays, elements)
-    state = (x, w, w, True, 0.0, 0.0, 0.0, FOREVER)
-    out[0] = x
-    last_h = -1.0
-    lags = np.zeros((3, 2))
+    """Fills `out` (fine) with the stem and moves `state` and `elements` on.
+
+    `state`: stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck
+    [s].
+    """
+    # Arrays are taken out of their tuples, and out of other arrays, once: in the loop it would count references.
+    grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
+    spreads, weights = plays
+    more_at, less_at, softer_at = bends
+    ends, varies = (stops[0], stops[1]), widening.size > 1
     modes = (c[V_STICK_SPEED] >= FOREVER, c[V_TARGET_STICKS] != 0.0)
+    x, w, after, stuck = state[0], state[1], state[2], state[3] != 0.0
+    speed, toward, travelled, rested = state[4], state[5], state[6], state[7]
+    out[0] = x
+    last_h, lags = -1.0, np.zeros((3, 2))
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
             last_h = h
             _decays(h, c, lags)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            grown = _half_band(widening[f if widening.size > 1 else 0], state, c, bends)
-            if c[V_IN_MOTION] != 0.0:
-                elements += c[V_IN_MOTION] * (state[0] - state[1])
-            extra = _breakaway(state, c)
-            w, slipped = _play_step(force[f], grown, extra, modes, stops, tables, plays, elements)
-            state = _move(h, w, slipped, c, stops, lags, state)
-            out[f] = state[0]
+            wide = widening[f if varies else 0] + c[V_WEAR] * travelled
+            more, less, softer = _half_band(wide, x, speed, c, more_at, less_at, softer_at)
+            extra, carried = _breakaway(stuck, toward, rested, c), c[V_IN_MOTION] * (x - w)
+            new_w, slipped = 0.0, False
+            for j in range(elements.size):
+                down, up = force[f] - spreads[j] - more, force[f] + spreads[j] + less
+                e, slips = _element(elements[j] + carried, down, up, softer, extra, modes, ends, grid, closing, opening)
+                slipped = slipped or slips
+                elements[j] = e
+                new_w += weights[j] * e
+            new, after, stuck = _move(h, new_w, slipped, c, stops, lags, x, w, after, stuck)
+            speed, travelled = abs(new - x) / h, travelled + abs(new - x)
+            rested, toward = rested + h if stuck else 0.0, new - x if new != x else toward
+            x, w = new, new_w
+            out[f] = x
+    state[0], state[1], state[2], state[3] = x, w, after, 1.0 if stuck else 0.0
+    state[4], state[5], state[6], state[7] = speed, toward, travelled, rested

@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.coupled import Bends, Plays, Tables, coupled_pass
+from twin.kernels.coupled import Bends, Plays, Tables, coupled_start, coupled_steps
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import plain_play, play_target
 from twin.kernels.stem import stem_pass
@@ -86,7 +86,9 @@ def _stem(
     low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
     if c[_COUPLING].any() or bends[0].size > 1:
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
-        coupled_pass(time_s, offsets, force, widening, c, stops, tables, plays, bends, start, out)
+        what = (c, stops, tables, plays, bends)
+        state, elements = coupled_start(float(force[0]), float(widening[0]), *what, start)
+        coupled_steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
         target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
