@@ -26,19 +26,14 @@ def report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_j
         }
         click.echo(json.dumps(document))
         return
-    from rich.console import Console
-    from rich.table import Table
+    from app.tables import console, new_table
 
-    table = Table(title="final error = mean over the last quarter of each hold")
-    for heading in (
-        "target [in]",
-        "position [in]",
-        "error [in]",
-        "error [% of travel]",
-        "swing [% of travel]",
-        "settled [s]",
-    ):
-        table.add_column(heading, justify="right")
+    headings = ("target", "position", "error", "error", "swing", "settled")
+    units = ("in", "in", "in", "% of travel", "% of travel", "s")
+    table = new_table(
+        "final error = mean over the last quarter of each hold",
+        [f"{heading}\n[{unit}]" for heading, unit in zip(headings, units, strict=True)],
+    )
     for r in results:
         table.add_row(
             f"{r.target_in:.4f}",
@@ -48,5 +43,5 @@ def report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_j
             f"{100 * r.swing_in / travel_in:.2f}",
             "never" if r.settled_s is None else f"{r.settled_s:.1f}",
         )
-    Console().print(table)
+    console().print(table)
     click.echo(f"the valve is at its safe command; record: {folder}")

@@ -12,6 +12,8 @@ import click
 if TYPE_CHECKING:
     from hal.clock import Clock
     from hal.modbus_bench import ModbusBench
+    from hal.profile import Profile
+    from sim_device.server import VirtualDevice
 
 
 @contextmanager
@@ -43,18 +45,21 @@ def open_to_look(
         with ModbusBench(found, port, clock, read_only=True, reopening=reopening) as bench:
             yield bench, clock
         return
+    clock = SteppedClock() if stepped else RealClock()
+    with (
+        _virtual(found, physics, seed, effects, clock) as device,
+        ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,
+    ):
+        yield bench, clock
+
+
+def _virtual(profile: Profile, physics: str | None, seed: int, effects: Sequence[str], clock: Clock) -> VirtualDevice:
     from app.session import _parse_effects as parse_effects
     from app.slow import COMPILING, say_if_slow
     from sim_device.physics.catalog import make_physics
     from sim_device.server import VirtualDevice
 
-    clock = SteppedClock() if stepped else RealClock()
     options = {"effects": parse_effects(effects)} if effects else {}
-    name = physics or ("positioner" if found.command_unit == "percent" else "thesis")
+    name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
     with say_if_slow(COMPILING):
-        served = VirtualDevice(found, make_physics(name, seed, **options), clock)
-    with (
-        served as device,
-        ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,
-    ):
-        yield bench, clock
+        return VirtualDevice(profile, make_physics(name, seed, **options), clock)

@@ -29,6 +29,16 @@ Row = tuple[float, ...]
 Entry = dict[str, object]
 
 
+def check_empty(folder: Path) -> None:
+    """Raises: `BadInput` when a record cannot go into the folder, because there is something in it."""
+    try:
+        taken = folder.is_dir() and any(folder.iterdir())
+    except OSError:
+        return  # making the record will say what is wrong with it
+    if taken:
+        raise BadInput(f"{folder}: the folder is not empty, and a record is never overwritten; name a new folder")
+
+
 class RunWriter:
     """One open record. `append`, `event` and `note` may be called from any thread and do no input or output."""
 
@@ -60,10 +70,9 @@ class RunWriter:
         """
         document: dict[str, object] = {**provenance(), **start, "columns": dict(columns)}
         path = folder if folder is not None else _default_folder(str(document.get("kind", "run")))
+        check_empty(path)
         try:
             path.mkdir(parents=True, exist_ok=True)
-            if any(path.iterdir()):
-                raise BadInput(f"{path}: the folder is not empty, and a record is never overwritten; name a new folder")
             write_document(path / START, document)
             sink = RecordSink(path, document, columns)
         except OSError as error:

@@ -48,16 +48,15 @@ def command(
 
 
 def _print(cases: list[Case], travel_in: float) -> None:
-    from rich.console import Console
-    from rich.table import Table
+    from app.tables import console, new_table
 
-    table = Table(title="limit cycle of the stem, peak to peak in % of travel, and period")
-    for name in ("law", "kp\n[psi/in]", "ki\n[psi/(in s)]", "describing\nfunction", "harmonic\nbalance", "measured"):
-        table.add_column(name, justify="left" if name == "law" else "right")
+    headings = ("law", "kp\n[psi/in]", "ki\n[psi/(in s)]", "describing\nfunction", "harmonic\nbalance", "measured")
+    title = "limit cycle of the stem, peak to peak in % of travel, and period"
+    table = new_table(title, headings, left=("law",))
     for case in cases:
         cells = (_cell(found, travel_in) for found in (case.predicted, case.balanced, case.measured))
         table.add_row(case.loop.law, f"{case.loop.kp:g}", f"{case.loop.ki:g}", *cells)
-    Console(width=None if Console().is_terminal else 110).print(table)
+    console().print(table)
 
 
 def _cell(found: object, travel_in: float) -> str:

@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import click
 
 from app.session import bench_options
+
+if TYPE_CHECKING:
+    from app.bench_check import Finding
 
 
 @click.command()
@@ -37,20 +42,26 @@ def command(
 
     with open_to_look(port, profile, physics=physics, seed=seed, effects=effects) as (bench, _):
         findings = look(bench, period_s)
+    if not as_json:
+        _print(findings)
     if leak:
         from app.session import open_bench
 
-        if not as_json:
-            click.echo("the valve will now be pressurised for half a minute, then go to its safe command")
+        click.echo("the valve will now be pressurised for half a minute, then go to its safe command", err=as_json)
         with open_bench(
             port, bench.profile, physics=physics, seed=seed, effects=effects, real_time=real_time
         ) as session:
-            findings += pressurise(session)
+            found = pressurise(session)
+        findings += found
+        if not as_json:
+            _print(found)
     if as_json:
         click.echo(json.dumps({f.name: {"ok": f.ok, "text": f.text, **f.numbers} for f in findings}))
-    else:
-        for finding in findings:
-            click.echo(f"{'ok  ' if finding.ok else 'BAD '} {finding.name:<12} {finding.text}")
     bad = [finding.name for finding in findings if not finding.ok]
     if bad:
         raise JobFailed(f"the bench is not ready: {', '.join(bad)}")
+
+
+def _print(findings: Sequence[Finding]) -> None:
+    for finding in findings:
+        click.echo(f"{'ok  ' if finding.ok else 'BAD '} {finding.name:<12} {finding.text}")

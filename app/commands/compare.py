@@ -112,26 +112,19 @@ def _play(todo: Sequence[Job], processes: int) -> list[Result]:
 
 
 def _print(results: Sequence[Result], detail: str, title: str) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
+    from app.tables import console, new_table
     from control.compare import by_scenario, summary
 
-    console = Console(width=None if Console().is_terminal else 160)
-    table = Table(title=title)
-    table.add_column("controller")
-    for _, head, unit, _ in COLUMNS:
-        table.add_column(f"{head}\n[{unit}]" if unit else head, justify="right")
+    headings = [f"{head}\n[{unit}]" if unit else head for _, head, unit, _ in COLUMNS]
+    table = new_table(title, ("controller", *headings), left=("controller",))
     rows = summary(results)
     for name in sorted(rows, key=lambda n: rows[n]["steady_worst"]):
         table.add_row(name, *(f"{rows[name][key]:.{digits}f}" for key, _, _, digits in COLUMNS))
-    console.print(table)
+    console().print(table)
     details = by_scenario(results, detail)
-    wide = Table(title=f"{detail} by scenario, median over seeds (spread)")
-    wide.add_column("scenario")
-    for name in details:
-        wide.add_column(name.replace("_", "\n"), justify="right")
+    names = [name.replace("_", "\n") for name in details]
+    wide = new_table(f"{detail} by scenario, median over seeds (spread)", ("scenario", *names), left=("scenario",))
     for scenario in next(iter(details.values())):
         cells = (f"{row[scenario][0]:.2f}\n({row[scenario][1]:.2f})" for row in details.values())
         wide.add_row(scenario, *cells)
-    console.print(wide)
+    console().print(wide)

@@ -60,16 +60,12 @@ def _verb(*words: str) -> None:
 
 def _compare(model: Path) -> None:
     """The identified numbers beside the virtual valve's true ones."""
-    from rich.console import Console
-    from rich.table import Table
-
+    from app.tables import console, new_table
     from control.design import DesignModel, load_design
 
     found, true = load_design(model), DesignModel()
-    table = Table(title="found over the wire, and true")
-    for column in ("number", "found", "true", "off by"):
-        table.add_column(column, justify="left" if column == "number" else "right")
+    table = new_table("found over the wire, and true", ("number", "found", "true", "off by"), left=("number",))
     for name in ("a1", "a2", "compliance", "tau_s", "rate_limit", "travel", "ep_tau_s"):
         got, want = float(getattr(found, name)), float(getattr(true, name))
         table.add_row(name, f"{got:.5g}", f"{want:.5g}", f"{100.0 * (got / want - 1.0):+.2f} %")
-    Console().print(table)
+    console().print(table)

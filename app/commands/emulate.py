@@ -73,16 +73,10 @@ def command(
         valve, said = _sealed(sealed, commitment, bool(physics or effects))
     else:
         valve, said = _open(physics or _usual(profile.command_unit), effects, seed)
+    bad, options = parse_faults(faults, seed=seed, timeout_s=fault_timeout), _options(refresh, time_kind)
     with say_if_slow(COMPILING):
         device = VirtualDevice(
-            profile,
-            valve,
-            _clock(time_kind),
-            link=port_link,
-            tcp=tcp,
-            faults=parse_faults(faults, seed=seed, timeout_s=fault_timeout),
-            pace_baud=pace,
-            options=_options(refresh, time_kind),
+            profile, valve, _clock(time_kind), link=port_link, tcp=tcp, faults=bad, pace_baud=pace, options=options
         )
     _serve(device, said | {"profile": profile_name, "units": sorted(device.units)}, as_json)
 

@@ -72,32 +72,26 @@ def _interval(each: Estimate) -> str:
 
 
 def _print(found: Identified, recordings: list[Recording], out: Path) -> None:
-    from rich.console import Console
-    from rich.table import Table
+    from app.tables import console, new_table
 
-    console = Console()
-    table = Table(title=f"identified from {', '.join(found.runs)}")
-    table.add_column("number")
-    table.add_column("value", justify="right")
-    table.add_column("95 % interval", justify="right")
-    table.add_column("unit")
-    table.add_column("from")
+    words = ("number", "unit", "from")
+    title = f"identified from {', '.join(found.runs)}"
+    table = new_table(title, ("number", "value", "95 % interval", "unit", "from"), left=words)
     for each in found.estimates:
         table.add_row(
             each.name, _value(each), _interval(each) or "-", each.unit, each.source, end_section=each.name == "k_eq"
         )
-    console.print(table)
+    console().print(table)
     quality = found.quality
     unit = found.design.position_unit
-    console.print(
+    click.echo(
         f"model against record: RMS {quality.rms:.4g} {unit} = {quality.rms_percent_of_travel:.3f} % of travel, "
-        f"fit {quality.fit_percent:.1f} % over {found.rows} rows",
-        highlight=False,
+        f"fit {quality.fit_percent:.1f} % over {found.rows} rows"
     )
     for note in found.notes:
-        console.print(f"note: {note}", highlight=False)
+        click.echo(f"note: {note}")
     for recording in recordings:
         for data_note in recording.notes:
             rows = f" ({data_note.rows} rows)" if data_note.rows else ""
-            console.print(f"data: {recording.name}: {data_note.what}: {data_note.handled}{rows}", highlight=False)
+            click.echo(f"data: {recording.name}: {data_note.what}: {data_note.handled}{rows}")
     click.echo(f"model: {out}")

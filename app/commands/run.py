@@ -136,7 +136,10 @@ def _run(
     from app.twin_beside import with_twin
     from control.tracking import judge_targets
     from logs.run import read_run
+    from logs.writer import check_empty
 
+    if out is not None:
+        check_empty(out)
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, wanted, {"note": note, "operator": operator, "seed": seed})
         if twin is not None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from math import isnan
 from typing import TYPE_CHECKING
 
 import click
@@ -88,7 +89,7 @@ def _print_figures(console: Console, run: Run) -> None:
     for title in ("Column", "unit", "lowest", "mean", "highest", "std dev", "missing"):
         table.add_column(title, justify="left" if title in ("Column", "unit") else "right")
     for each in column_statistics(run):
-        figures = [f"{value:.5g}" for value in (each.low, each.mean, each.high, each.spread)]
+        figures = ["-" if isnan(value) else f"{value:.5g}" for value in (each.low, each.mean, each.high, each.spread)]
         table.add_row(each.name, each.unit, *figures, str(each.missing or ""))
     console.print()
     console.print(f"{run.rows} samples, {run.duration_s:.6g} s, one every {timing(run).period_s:.4g} s")

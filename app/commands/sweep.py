@@ -84,7 +84,10 @@ def _sweep(
     **bench: Any,
 ) -> None:
     from app.job import perform
+    from logs.writer import check_empty
 
+    if out is not None:
+        check_empty(out)
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
         _announce(session, experiment, job, as_json)

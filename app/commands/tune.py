@@ -49,18 +49,15 @@ def _finite(value: float) -> float | None:
 
 
 def _print(tuned: list[Tuned], title: str) -> None:
-    from rich.console import Console
-    from rich.table import Table
+    from app.tables import console, new_table
 
-    console = Console(width=None if Console().is_terminal else 150)
-    table = Table(title=title)
-    for name in ("controller", "settings", "gain margin", "delay margin", "phase margin", "why"):
-        table.add_column(name)
+    headings = ("controller", "settings", "gain margin", "delay margin", "phase margin", "why")
+    table = new_table(title, headings, left=headings)
     for t in tuned:
         settings = " ".join(f"{key}={value:g}" for key, value in t.settings.items())
         table.add_row(t.controller, settings, *_margin_cells(t.margins), t.why)
-    console.print(table)
-    console.print("Use them: lostmotion run --controller NAME --set key=value ...")
+    console().print(table)
+    click.echo("Use them: lostmotion run --controller NAME --set key=value ...")
 
 
 def _margin_cells(left: Margins | None) -> tuple[str, str, str]:

@@ -68,7 +68,7 @@ def test_check_refuses_a_tick_that_the_line_cannot_carry(device, capsys) -> None
 
 
 def test_check_presses_air_on_request() -> None:
-    found = json.loads(lost("check", "--leak", "--json").output)
+    found = json.loads(lost("check", "--leak", "--json").stdout)
     assert found["leak"]["ok"]
     assert abs(found["converter"]["error_psi"]) < 0.1
     assert found["supply"]["lowest_psi"] == pytest.approx(found["supply"]["before_psi"], rel=0.01)

@@ -101,6 +101,7 @@ def test_the_table_is_readable_in_a_pipe(tmp_path: Path, capsys: pytest.CaptureF
     said = capsys.readouterr().out
     assert "The valve will move" in said
     assert "at its safe command; record:" in said
+    assert said.count("[in]") == 3
     assert "\x1b[" not in said
 
 

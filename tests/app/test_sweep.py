@@ -39,6 +39,17 @@ def test_a_sweep_is_announced_recorded_and_ends_safe(tmp_path: Path, capsys: pyt
     assert recorded.columns["position_in"].max() > 0.1
 
 
+def test_a_folder_that_holds_something_is_refused_before_the_bench_is_opened(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "thesis.txt").write_text("years of work", encoding="utf-8")
+    assert sweep("hold", "--port", "/dev/absent", "--out", str(tmp_path)) == 2
+    assert run(["run", "--controller", "p", "--targets", "0.1", "--port", "/dev/absent", "--out", str(tmp_path)]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.count("the folder is not empty, and a record is never overwritten") == 2
+
+
 def test_the_same_seed_gives_the_same_record(tmp_path: Path) -> None:
     for name in ("a", "b"):
         assert sweep("hold", "--set", "hold_s=3", "--set", "conditioning_s=1", "--out", str(tmp_path / name)) == 0
