@@ -91,9 +91,15 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
             outcome = supervised(loop, record, lambda: _play(session, loop, job))
         except BaseException:
             display.close()
-            echo(f"stopped after {loop.rows} samples; record: {record.folder}{_hint(job, record.folder)}", err=True)
+            _say_stopped(loop.rows, job.kind, record.folder)
             raise
     return Finished(record.folder, outcome)
+
+
+def _say_stopped(rows: int, kind: str, folder: Path) -> None:
+    from app.resume import hint
+
+    echo(f"stopped after {rows} samples; record: {folder}\ngo on with: {hint(kind, folder)}", err=True)
 
 
 def _play(session: Session, loop: Loop, job: Job) -> Outcome:
@@ -122,10 +128,6 @@ def undisturbed() -> Iterator[None]:
     finally:
         gc.unfreeze()
         sys.setswitchinterval(before_s)
-
-
-def _hint(job: Job, folder: Path) -> str:
-    return f"\ngo on with: lostmotion {job.kind} --resume {folder}"
 
 
 def _check_watchdogs(session: Session, period_s: float) -> None:

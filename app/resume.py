@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,6 +13,8 @@ from hal.errors import BadInput
 
 if TYPE_CHECKING:
     from logs.run import Run
+
+_BENCH = ("port", "profile", "physics", "seed", "effects", "real_time", "sealed")
 
 
 def stopped_run(text: str | Path, kind: str) -> tuple[Run, int]:
@@ -39,14 +43,29 @@ def continues(run: Run, first: int) -> dict[str, object]:
     return {"continues": str(run.start.get("uuid", run.path)), "first_step": first}
 
 
-def refuse_given(*names: str) -> None:
-    """Raises: `BadInput` when one of these options was typed: a run that goes on takes them from its record."""
-    context = click.get_current_context()
+def hint(kind: str, folder: Path) -> str:
+    """The command that goes on with a run that is being stopped, on the same bench."""
+    words = ["lostmotion", kind, "--resume", str(folder)]
+    context = click.get_current_context(silent=True)
+    if context is not None:
+        for option in _typed(context, _BENCH):
+            value = context.params[str(option.name)]
+            for each in value if isinstance(value, tuple) else (value,):
+                words += [option.opts[0]] if each is True else [option.opts[0], str(each)]
+    return shlex.join(words)
+
+
+def _typed(context: click.Context, names: Sequence[str]) -> list[click.Parameter]:
     source = click.core.ParameterSource.COMMANDLINE
-    typed = [
-        option.opts[0]
+    return [
+        option
         for option in context.command.params
         if option.name in names and context.get_parameter_source(option.name) is source
     ]
+
+
+def refuse_given(*names: str) -> None:
+    """Raises: `BadInput` when one of these options was typed: a run that goes on takes them from its record."""
+    typed = [option.opts[0] for option in _typed(click.get_current_context(), names)]
     if typed:
         raise BadInput(f"--resume takes {', '.join(typed)} from the record of that run; leave it out")

@@ -190,7 +190,7 @@ def _announce(session: Session, wanted: Wanted, as_json: bool) -> None:
 
     plan = wanted.plan
     click.echo(
-        f"{wanted.controller} on {session.title}: {len(plan.steps)} targets, {duration_words(plan.duration_s)}, "
+        f"{wanted.controller} on {session.title}: {_counted(len(plan.steps))}, {duration_words(plan.duration_s)}, "
         f"a tick every {plan.period_s:g} s. The valve will move.",
         err=as_json,
     )
@@ -206,9 +206,13 @@ def _preview(wanted: Wanted, as_json: bool) -> None:
         return
     words = ", ".join(f"{target:g}" for target in targets)
     click.echo(
-        f"{controller}: {len(targets)} targets ({words} in), {duration_words(plan.duration_s)}, "
+        f"{controller}: {_counted(len(targets))} ({words} in), {duration_words(plan.duration_s)}, "
         f"a tick every {plan.period_s:g} s. Nothing was moved."
     )
+
+
+def _counted(targets: int) -> str:
+    return f"{targets} target" + "s" * (targets != 1)
 
 
 def _list(as_json: bool) -> None:

@@ -75,7 +75,7 @@ def test_a_sweep_whose_port_is_pulled_out_vents_the_valve_when_it_is_back_and_ca
     said = capsys.readouterr().err.splitlines()
     assert said[-1] == f"lostmotion: port {tmp_path / 'port'} is gone: unplugged, or the other end has closed it"
     assert "the port is open again" in said
-    assert f"go on with: lostmotion sweep --resume {tmp_path / 'a'}" in said
+    assert f"go on with: lostmotion sweep --resume {tmp_path / 'a'} --port {device.port}" in said
     assert device.rig.command == 0.0
     stopped = read_run(tmp_path / "a")
     assert (stopped.status, stopped.rows) == ("fail", 5)

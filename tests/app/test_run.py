@@ -47,8 +47,8 @@ def test_a_stopped_loop_is_gone_on_with_at_the_target_it_did_not_finish(
     words = ["--controller", "pi", "--set", "ki=0.7", "--targets", "0.1,0.2,0.3", "--hold", "4", "--period", "0.2"]
     with monkeypatch.context() as patched:
         patched.setattr(RunDisplay, "show", interrupt)
-        assert close(*words, "--out", first) == 130
-    assert f"go on with: lostmotion run --resume {first}" in capsys.readouterr().err
+        assert close(*words, "--out", first, "--seed", "4", "--effect", "stiction=0.1") == 130
+    assert f"go on with: lostmotion run --resume {first} --seed 4 --effect stiction=0.1\n" in capsys.readouterr().err
     stopped = read_run(tmp_path / "a")
     assert (stopped.status, stopped.rows) == ("abort", 21)
     assert close("--resume", first, "--dry-run") == 0
