@@ -12,6 +12,8 @@ from typing import Any
 from bench.stranger.ep_effects import HIGHEST_PSI
 from bench.stranger.valve import TRAVEL_IN
 
+_ROUNDING = 1e-5  # diagnosis.json has six digits; a resolution is known better than that
+
 _Convert = Callable[[float], float]
 
 
@@ -95,5 +97,6 @@ def size_covered(label: Mapping[str, Any], answer: Mapping[str, Any]) -> bool | 
         for named in answer["causes"]:
             if named["name"] == cause["name"] and parameter in named["parameters"]:
                 ends = sorted(abs(end) for end in named["parameters"][parameter]["ci95"])
-                verdicts.append(ends[0] <= convert(cause["size"]) <= ends[1])
+                true = convert(cause["size"])
+                verdicts.append(ends[0] * (1 - _ROUNDING) <= true <= ends[1] * (1 + _ROUNDING))
     return all(verdicts) if verdicts else None
