@@ -128,3 +128,17 @@ def _print(results: Sequence[Result], detail: str, title: str) -> None:
         cells = (f"{row[scenario][0]:.2f}\n({row[scenario][1]:.2f})" for row in details.values())
         wide.add_row(scenario, *cells)
     console().print(wide)
+    click.echo(_permitted(results))
+
+
+def _permitted(results: Sequence[Result]) -> str:
+    """What gauge and supply permit, by the numbers of the scenarios as played."""
+    from control.compare import true_valve
+    from control.permitted import least_error_percent, reaches
+
+    played = {(r.job.scenario, r.job.seed): (r.job.asked, r.job.period_s) for r in results}.values()
+    rests = (0.25 * min(part.duration_s for part in asked.segments if part.is_hold) for asked, _ in played)
+    least = max(least_error_percent(asked, rest, tick) for (asked, tick), rest in zip(played, rests, strict=True))
+    short = sorted({asked.name for asked, _ in played if not reaches(asked, true_valve(asked))})
+    supply = f"the supply is too low for {', '.join(short)}" if short else "the supply reaches every target"
+    return f"permitted by the bench: the gauge tells the stem to {least:.2f} % in the last quarter of a hold; {supply}"

@@ -9,7 +9,7 @@ import click
 
 #: A sealed valve of the thesis's family with one effect; chosen so that there is something to find. Try others.
 SEED = "valve-8"
-CONTROLLER = "overdrive"
+CONTROLLER = "brake"
 TARGETS = "0.1,0.4,0.25,0.5,0.05"
 
 

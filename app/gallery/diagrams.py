@@ -10,6 +10,8 @@ from app.gallery.figure import BLUE, GREY, Entry
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
+HALF = 0.38  # of a block's width and height
+
 CHAINS: tuple[tuple[str, str, tuple[str, ...], bool, str], ...] = (
     (
         "2-3",
@@ -35,14 +37,14 @@ CHAINS: tuple[tuple[str, str, tuple[str, ...], bool, str], ...] = (
     (
         "3-1",
         "Figures 3-1 and 3-3: P and PI control",
-        ("target", "error", "Kp\n(+ Ki / s)", "+ bias, or\n+ P_measurement", "valve", "position"),
+        ("target", "error", "Kp\n(+ Ki / s)", "+ bias, or\n+ P_meas", "valve", "position"),
         True,
         "`p` adds the bias, `p_incremental` the measured pressure; `pi`, `pi_antiwindup`.",
     ),
     (
         "3-6",
         "Figures 3-6 and 3-11: If-Then control, and with PI",
-        ("target", "error", "side of the\nthreshold?", "P_meas + g e\n(+- deadband, + I)", "valve", "position"),
+        ("target", "error", "side of the\nthreshold?", "P_meas + g e\n(+- deadband)\n(+ I)", "valve", "position"),
         True,
         "`if_then_constant`, `if_then_line`, `if_then_pi`.",
     ),
@@ -59,20 +61,22 @@ def entries() -> list[Entry]:
 
 def _drawer(blocks: Sequence[str], feedback: bool):  # type: ignore[no-untyped-def]
     def draw(canvas: Canvas) -> None:
+        from matplotlib.patches import Rectangle
+
         axes = canvas.subplots()
-        axes.set(xlim=(-0.55, len(blocks) - 0.45), ylim=(-0.75, 0.5))
+        axes.set(xlim=(-0.5, len(blocks) - 0.5), ylim=(-0.85, 0.45))
         axes.axis("off")
+        arrow = {"arrowstyle": "->", "color": GREY, "lw": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
         for place, text in enumerate(blocks):
-            ends = place in (0, len(blocks) - 1)
-            box = {"boxstyle": "square,pad=0.45", "fc": "white", "ec": GREY if ends else BLUE, "lw": 1.0}
-            axes.text(place, 0.0, text, ha="center", va="center", fontsize=8, bbox=box)
+            edge = GREY if place in (0, len(blocks) - 1) else BLUE
+            axes.add_patch(Rectangle((place - HALF, -HALF), 2.0 * HALF, 2.0 * HALF, fc="white", ec=edge, lw=1.0))
+            axes.text(place, 0.0, text, ha="center", va="center", fontsize=8)
             if place:
-                arrow = {"arrowstyle": "->", "color": GREY, "lw": 1.0}
-                axes.annotate("", (place - 0.4, 0.0), (place - 0.6, 0.0), arrowprops=arrow)
+                axes.annotate("", (place - HALF, 0.0), (place - 1.0 + HALF, 0.0), arrowprops=arrow)
         if feedback:
             last = len(blocks) - 1
-            axes.plot([last, last, 1, 1], [-0.3, -0.6, -0.6, -0.35], color=GREY, lw=1.0)
-            axes.annotate("", (1, -0.25), (1, -0.4), arrowprops={"arrowstyle": "->", "color": GREY, "lw": 1.0})
-            axes.text(0.5 * (last + 1), -0.55, "LVDT (and measured pressure)", ha="center", va="bottom", fontsize=7)
+            axes.plot([last, last, 1, 1], [-HALF, -0.75, -0.75, -HALF - 0.15], color=GREY, lw=1.0)
+            axes.annotate("", (1, -HALF), (1, -HALF - 0.2), arrowprops=arrow)
+            axes.text(0.5 * (last + 1), -0.71, "LVDT (and measured pressure)", ha="center", va="bottom", fontsize=7)
 
     return draw

@@ -32,15 +32,15 @@ def figure_3_5() -> Entry:
 
     def draw(canvas: Canvas) -> None:
         axes = canvas.subplots()
-        x = np.array([0.0, DESIGN.travel])
+        x, arrow = np.array([0.0, DESIGN.travel]), {"arrowstyle": "->", "color": GREY, "shrinkA": 0.0, "shrinkB": 0.0}
         for edge, colour in ((DESIGN.a1, BLUE), (DESIGN.a2, RED)):
             axes.plot(edge + x / DESIGN.compliance, x, color=colour, lw=1.0)
-        for begin, step, y, name, away, side in (
-            (high, small_psi, start_in, "1", -0.045, "left"),
-            (low, large_psi, start_in - 0.02, "2", -0.035, "center"),
-        ):
-            axes.annotate("", (begin + step, y), (begin, y), arrowprops={"arrowstyle": "->", "color": GREY})
-            axes.text(begin + 0.4 * step, y + away, f"step {name}: {step:.2f} psi", ha=side, fontsize=8)
+        axes.annotate("", (high + small_psi, start_in), (high, start_in), arrowprops=arrow)
+        axes.text(high + small_psi + 0.06, start_in, f"step 1: {small_psi:.2f} psi", va="center", fontsize=8)
+        axes.annotate("", (low + large_psi, start_in - 0.04), (low, start_in - 0.04), arrowprops=arrow)
+        axes.text(low + 0.4 * large_psi, start_in - 0.08, f"step 2: {large_psi:.2f} psi", ha="center", fontsize=8)
+        axes.plot([low, low], [start_in - 0.04, start_in], color=GREY, lw=0.8, ls=":")
+        axes.plot([high + small_psi] * 2, [start_in - 0.04, end_in], color=GREY, lw=0.8, ls=":")
         axes.plot([high, low], [start_in] * 2, "o", color=GREY, ms=5)
         axes.plot([high + small_psi], [end_in], "s", color=GREY, ms=5)
         axes.set(xlabel="pressure [psi]", ylabel="position [in]")

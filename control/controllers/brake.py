@@ -44,8 +44,8 @@ class Brake(Law[BrakeState]):
     small leaks move nothing. Sticking: where the pressure has gone `grip_psi` and `surely` standard deviations beyond
     an edge and nothing has moved, or on and on without the play output coming along, small pushes are given up, and
     what they seemed to teach is forgotten; from then on every correction is a stroke of `stroke_psi` beyond the edge
-    and back, which slides from start to end; at most `strokes` per target, and none that takes longer than `stroke_s`:
-    what is left then, friction does not permit to take away. Each time of turning back makes it more tolerant.
+    and back, which slides from start to end, after `look_s` of rest; at most `strokes` per target, and none that takes
+    longer than `stroke_s`: what is left then, stays. Each time of turning back makes it more tolerant.
     """
 
     tolerance_in: float = 0.0007
@@ -53,7 +53,8 @@ class Brake(Law[BrakeState]):
     band_in: float = 0.0028
     again_in: float = 0.005
     short_in: float = 0.0005
-    patience_s: float = 2.2
+    patience_s: float = 3.0
+    look_s: float = 2.2
     retreat_psi: float = 0.4
     grip_psi: float = 0.04
     surely: float = 2.5
@@ -73,7 +74,12 @@ class Brake(Law[BrakeState]):
         after = self._driving(state, soon, drive, fresh, dt_s) if drive else self._settling(state, soon)
         quiet_s = state.quiet_s + dt_s if after.aim_psi == before_psi else 0.0
         driven_s = state.driven_s + dt_s if after.drive else 0.0
-        return replace(after, quiet_s=quiet_s, driven_s=driven_s), self._command_psi(soon.inside, after.aim_psi, dt_s)
+        command_psi = self._command_psi(soon.inside, after.aim_psi, dt_s, self._calm(after))
+        return replace(after, quiet_s=quiet_s, driven_s=driven_s), command_psi
+
+    def _calm(self, state: BrakeState) -> bool:
+        """Whether the pressure may take its time: after some turns, to go beyond the aim costs more than it gains."""
+        return state.turns > 2 and not state.drive and not state.sticks
 
     def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
@@ -146,7 +152,7 @@ class Brake(Law[BrakeState]):
         if far and state.turns < GIVEN_UP:
             return way
         enough_in = 0.5 * self.tolerance_in + self._allowed_in(soon, 0)
-        stroke = state.sticks and state.quiet_s > self.patience_s and state.turns < self.strokes
+        stroke = state.sticks and state.quiet_s > self.look_s and state.turns < self.strokes
         return _sign(off_in) if stroke and abs(off_in) > enough_in else 0
 
     def _driven(self, soon: Belief, state: BrakeState, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
@@ -194,7 +200,7 @@ class Brake(Law[BrakeState]):
         """To the edge; through the deadband a little short of it, because pushing on is cheaper than turning back. What
         has to be pushed the same way again was not at the edge: it gets more than is thought to be missing."""
         if self._touches(soon, side):
-            short_in = -min(count - 1, 2) * abs(target_in - soon.inside.w)
+            short_in = -min(count - 1, 5) * abs(target_in - soon.inside.w)
         else:
             short_in = self.short_in + min(soon.edge_doubt_in(side), 0.01)
         return soon.edge_psi(target_in - side * short_in, side)
@@ -217,12 +223,14 @@ class Brake(Law[BrakeState]):
             return aim_psi
         return soon.edge_psi(stop_in + side * self.design.rate_limit * self.design.tau_s, side)
 
-    def _command_psi(self, inside: Inside, aim_psi: float, dt_s: float) -> float:
-        """The command that brings the pressure to the aim within a tick, if the supply can."""
+    def _command_psi(self, inside: Inside, aim_psi: float, dt_s: float, calm: bool = False) -> float:
+        """The command that brings the pressure to the aim within a tick, if the supply can and nothing is `calm`."""
         away_psi, tau_s = aim_psi - inside.p, self.design.ep_tau_s
         lead = min(1.0 / (1.0 - math.exp(-dt_s / tau_s)), 3.5) if tau_s > 0.0 else 1.0
         lead *= 0.96 if inside.line.ticks > 0.0 else 1.0  # a dead time is known to a part of a tick: not beyond the aim
-        return self.clamp(inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 else 1.0) * away_psi))
+        return self.clamp(
+            inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 and not calm else 1.0) * away_psi)
+        )
 
 
 def _doubt_psi(belief: Belief, side: int) -> float:

@@ -52,6 +52,7 @@ def test_compare_says_which_seeds() -> None:
     )
     assert "seeds 0 to 0, sizes and targets as the scenarios name them" in named.stdout
     assert f"seeds {FIRST_SEED} to {FIRST_SEED}, sizes and targets drawn, held out" in drawn.stdout
+    assert "the supply reaches every target" in named.stdout
 
 
 def test_compare_prints_a_table_and_a_picture(tmp_path: Path) -> None:

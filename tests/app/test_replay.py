@@ -18,7 +18,7 @@ from hal.sample import Quality, Reading, Sample
 from logs.run import read_run
 
 
-@pytest.mark.parametrize("name", ["overdrive", "if_then_pi", "pi_antiwindup"])
+@pytest.mark.parametrize("name", ["brake", "overdrive", "if_then_pi", "pi_antiwindup"])
 def test_a_record_replays_bit_for_bit(name: str, tmp_path: Path) -> None:
     arguments = ["--controller", name, "--targets", "0.1,0.3", "--hold", "10", "--out", str(tmp_path / "run")]
     CliRunner().invoke(run, arguments, catch_exceptions=False)

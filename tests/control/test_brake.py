@@ -66,3 +66,9 @@ def test_pushing_in_vain_leaves_no_trace(breakaway_psi: float) -> None:
     assert state.sticks
     assert state.belief.compliance == pytest.approx(DESIGN.compliance, rel=0.03)
     assert np.abs(off[2:, 300:].mean(axis=1)).max() < 0.3
+
+
+def test_a_dead_time_between_two_tenths_of_a_tick_does_not_make_it_hunt() -> None:
+    """Known to 0.01 s at best, it carries the pressure beyond the aim; after some turns the pressure goes slowly."""
+    _, off = hold([0.15, 0.39, 0.27, 0.3, 0.28, 0.5], effects={"dead_time": 0.194})
+    assert np.ptp(off[:, 200:], axis=1).max() < 0.3
