@@ -6,6 +6,7 @@ delay, but the strength of a creep depends on the form of its tail.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -43,7 +44,7 @@ def _part_of_travel(size: float, design: DesignModel) -> float:
 
 def _of_even_widths(size: float, _design: DesignModel) -> float:
     """Seven widths from -size to size have the standard deviation of an even spread that is wider by sqrt(8 / 6)."""
-    return size * (8.0 / 6.0) ** 0.5
+    return size * math.sqrt(8.0 / 6.0)
 
 
 def _of_two_lags(size: float, _design: DesignModel) -> float:
