@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 F = TypeVar("F", bound=Callable[..., Any])
 
+_PACE = {"real": "real time", "stepped": "its time stepped, faster than real"}
 DEADMAN_S = 2.0  # a command so much overdue means that the program hangs: the valve goes to safety without it
 
 
@@ -54,7 +55,8 @@ class Session:
         port = self.bench.info.port
         if not self.virtual:
             return f"bench '{self.profile.name}' on {port}"
-        return f"the virtual valve ('{self.virtual['physics']}') behind {port}, Modbus RTU, {self.virtual['time']} time"
+        pace = _PACE[str(self.virtual["time"])]
+        return f"the virtual valve ('{self.virtual['physics']}') behind {port}, Modbus RTU, {pace}"
 
 
 def bench_options(command: F) -> F:
