@@ -7,6 +7,7 @@ keeps it from sending usage data.
 from __future__ import annotations
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
@@ -68,12 +69,17 @@ def take_picture(
         png.touch()
     except OSError as error:
         raise BadInput(f"{png}: cannot be written ({error.strerror}); name another file") from error
-    with _headless(file, size) as client:
-        clock = RealClock()
-        _wait_for_recording(client, clock)
-        _set_cursor(client, at_s)
-        png.write_bytes(_settled_picture(client, clock, settle_s))
-        return [report.summary for view in client.get_state().views for report in view.reports]
+    try:
+        with _headless(file, size) as client:
+            clock = RealClock()
+            _wait_for_recording(client, clock)
+            _set_cursor(client, at_s)
+            png.write_bytes(_settled_picture(client, clock, settle_s))
+            return [report.summary for view in client.get_state().views for report in view.reports]
+    except BaseException:
+        if not png.stat().st_size:
+            png.unlink()  # no picture, no file
+        raise
 
 
 @contextmanager
@@ -87,16 +93,23 @@ def _headless(file: Path, size: tuple[int, int]) -> Iterator[ViewerClient]:
         process = _start(options, log)
         try:
             if not _up(process, port):
-                log.seek(0)
-                tail = log.read().decode(errors="replace").strip().splitlines()[-1:] or ["it said nothing"]
-                raise JobFailed(
-                    f"the viewer cannot render here ({tail[0][:200]}); a picture without a screen needs a Vulkan "
-                    "driver: on Debian, apt-get install mesa-vulkan-drivers"
-                )
+                raise _no_picture(log)
             yield ViewerClient.connect(f"rerun+http://{LOOPBACK}:{port}/proxy")
+        except ConnectionError as error:  # it was there, and has died: some find out late that they cannot render
+            raise _no_picture(log) from error
         finally:
             process.terminate()
             process.wait(10.0)
+
+
+def _no_picture(log: IO[bytes]) -> JobFailed:
+    log.seek(0)
+    said = [line.strip() for line in log.read().decode(errors="replace").splitlines() if line.strip()]
+    why = next((line for line in said if re.search("error|failed|panicked", line, re.IGNORECASE)), (said or [""])[-1])
+    return JobFailed(
+        f"the viewer cannot render here ({why[:200] or 'it said nothing'}); a picture without a screen needs a Vulkan "
+        "driver: on Debian, apt-get install mesa-vulkan-drivers"
+    )
 
 
 def _start(options: list[str], log: IO[bytes] | None) -> subprocess.Popen[bytes]:

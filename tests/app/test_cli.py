@@ -89,6 +89,7 @@ def test_version(capsys) -> None:
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
+        (["swep"], "lostmotion: no such command 'swep'. Did you mean sweep? See `lostmotion --help`"),
         (["nosuch"], "lostmotion: no such command 'nosuch'; see `lostmotion --help`"),
         (["show"], "lostmotion: missing argument 'RUN'; see `lostmotion show --help`"),
         (

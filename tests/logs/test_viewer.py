@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -48,6 +49,22 @@ def test_a_viewer_that_cannot_start_says_what_to_install(
     broken.chmod(0o755)
     monkeypatch.setattr(viewer, "viewer_binary", lambda: broken)
     with pytest.raises(JobFailed, match=r"Failed to get render context.*apt-get install mesa-vulkan-drivers"):
+        viewer.take_picture(view, tmp_path / "view.png")
+    assert not (tmp_path / "view.png").exists()
+
+
+def test_a_viewer_that_finds_out_late_says_the_same(
+    view: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    late = tmp_path / "viewer"
+    late.write_text(
+        f"#!{sys.executable}\nimport socket, sys\n"
+        "server = socket.create_server(('127.0.0.1', int(sys.argv[sys.argv.index('--port') + 1])))\n"
+        "server.accept()\nprint('starting')\nprint('thread main panicked: no adapter')\nprint('bye')\n"
+    )
+    late.chmod(0o755)
+    monkeypatch.setattr(viewer, "viewer_binary", lambda: late)
+    with pytest.raises(JobFailed, match=r"panicked: no adapter.*apt-get install mesa-vulkan-drivers"):
         viewer.take_picture(view, tmp_path / "view.png")
 
 
