@@ -24,6 +24,8 @@ Progress = Callable[[str, float], None]
 _RANKED = 6
 #: Of the error before; a model that leaves more has explained nothing.
 NO_BETTER = 0.95
+#: Of the noise; a design that misses by more has a gap, whatever explains it.
+DOUBTFUL = 1.6
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,12 +69,15 @@ def heldout_parts(
 def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
-    A cause is not named for an error below the noise, nor when the model with it predicts no better. What the readings
-    themselves showed (false, held, coarse ones) needs no prediction.
+    A cause is not named for an error below the noise, nor when the model with it predicts no better; nor is a design
+    without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
+    needs no prediction.
     """
+    before, after = rms(parts.before), rms(parts.after)
+    if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
+        return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     if not judgement.causes or sensing.accepted:
         return parts, judgement
-    before, after = rms(parts.before), rms(parts.after)
     if before <= floor:
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
     if after > NO_BETTER * before:

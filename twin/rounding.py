@@ -7,7 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from logs.recording import Recording
+import numpy as np
+
+from logs.recording import FloatArray, Recording
 from twin.catalog import effect
 from twin.fit.channel import chain_channel
 from twin.fit.trial import make_trial
@@ -15,8 +17,9 @@ from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
 
 _STEP_S = 0.1
-#: How much smaller the squared error has to be.
+#: How much smaller the squared error has to be; or how near, in half steps, the mean error to half a step.
 _CLEARLY = 0.8
+_NEARLY = 0.25
 
 
 def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> tuple[Inserted, ...]:
@@ -25,12 +28,13 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
         return ()
     form = effect("lvdt_calibration").form("zero")
     options = [(), *((Inserted("lvdt_calibration", form, (s * sensing.step,)),) for s in (-0.5, 0.5))]
-    misfits = [_misfit(recordings, Plant(plant.design, (*plant.inserted, *o)), sensing) for o in options]
+    errors = [_errors(recordings, Plant(plant.design, (*plant.inserted, *o)), sensing) for o in options]
+    misfits = [float(error @ error) for error in errors]
     best = min(range(3), key=lambda k: misfits[k])
-    return options[best] if misfits[best] < _CLEARLY * misfits[0] else ()
+    near = abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
+    return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
 
 
-def _misfit(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> float:
+def _errors(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> FloatArray:
     trials = [make_trial(r, _STEP_S, bad) for r, bad in zip(recordings, sensing.bad_rows, strict=True)]
-    residuals = chain_channel(trials, 1.0).residuals(plant)
-    return float(residuals @ residuals)
+    return chain_channel(trials, 1.0).residuals(plant)

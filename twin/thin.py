@@ -33,6 +33,9 @@ LOOK_S = 1_200.0
 #: Windows are about so long [s], and each is the liveliest of so many in its part of the record.
 _WINDOW_S = 300.0
 _CHOICES = 8
+#: At the start of a window nobody knows what the stem remembers; so many lags, or this share, are simulated unseen.
+_LEAD_LAGS = 20.0
+_LEAD_SHARE = 0.2
 _JUMP = 0.005  # share of the command's span that is a jump
 
 
@@ -124,7 +127,15 @@ def _trial(case: Case, span: Span, share: float) -> Trial:
     bad = _false_rows(whole)[span.start : span.stop][rows]
     step_s = fine_step_s(case.base.design, thin)
     start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
-    return make_trial(thin, step_s, bad, start.play if start.play != start.position else None)
+    trial = make_trial(thin, step_s, bad, start.play if start.play != start.position else None)
+    return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
+
+
+def _led_in(trial: Trial, lead_s: float) -> Trial:
+    """The trial with its first stretch simulated but not compared."""
+    time_s = trial.recording.time_s
+    lead_s = min(lead_s, _LEAD_SHARE * float(time_s[-1] - time_s[0]))
+    return replace(trial, use_y=trial.use_y & (time_s - time_s[0] >= lead_s))
 
 
 def _false_rows(trial: Trial) -> npt.NDArray[np.bool_]:

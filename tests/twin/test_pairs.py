@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import numpy as np
 from hypothesis import given
@@ -73,3 +74,16 @@ def test_a_wrong_number_beside_an_effect_is_named() -> None:
     channel = position_channel([trial], SIGMA)
     findings = Searcher(channel, Plant(DESIGN), Scales(), SearchRules(threads=2)).run()
     assert set(decide(findings, DecisionRules()).names) == {"creep", "parameter:rate_limit"}
+
+
+def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
+    # Whatever the dice do is in no vocabulary; it repeats nowhere, and no two causes make a dent in it.
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    dice = np.random.default_rng(3).normal(0.0, 0.01, 250)
+    lost = replace(trial.recording, position=trial.recording.position + np.repeat(dice, 16))
+    channel = position_channel([replace(trial, recording=lost)], SIGMA)
+    rules = SearchRules(threads=2, beam=1, rounds=2, polish=2, paired=1, screened=1, forms=1)
+    sizes = {len(f.names) for f in Searcher(channel, Plant(DESIGN), Scales(), rules).run().fits}
+    assert 2 in sizes and 3 not in sizes
+    bold = Searcher(channel, Plant(DESIGN), Scales(), replace(rules, hopeless=1.0)).run().fits
+    assert 3 in {len(f.names) for f in bold}

@@ -95,6 +95,16 @@ def test_windows_are_spread_and_lively(toy: Recording, monkeypatch: pytest.Monke
     assert seen.whole is not None
 
 
+def test_a_window_is_not_compared_before_the_stem_has_forgotten(
+    toy: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = look(make_case([toy], DesignModel()), monkeypatch, most_s=200.0)
+    for span, trial in zip(seen.spans, seen.trials, strict=True):
+        time_s = trial.recording.time_s
+        first_s = float(time_s[np.flatnonzero(trial.use_y)[0]] - time_s[0])
+        assert first_s < 5.0 if span.start == 0 else first_s >= min(54.0, 0.2 * float(time_s[-1] - time_s[0]))
+
+
 @pytest.mark.parametrize("most_s", [1e9, 200.0])
 def test_held_out_errors_cover_all_rows(toy: Recording, monkeypatch: pytest.MonkeyPatch, most_s: float) -> None:
     case = make_case([toy], DesignModel())

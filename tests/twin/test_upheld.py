@@ -42,6 +42,14 @@ def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, le
     assert kept.after[0] == left
 
 
+@pytest.mark.parametrize(("before", "verdict"), [(1.2, "no_gap"), (2.0, "unexplained")])
+def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, verdict: str) -> None:
+    nothing = Judgement("no_gap", (), (), ())
+    kept, judgement = upheld(parts(before, 0.8 * before, before), nothing, 1.0, NOTHING_SEEN)
+    assert judgement.verdict == verdict
+    assert kept.after[0] == pytest.approx(before if verdict == "no_gap" else 0.8 * before)
+
+
 def test_what_the_readings_showed_needs_no_prediction() -> None:
     seen = Sensing((), {"sensor_quantization": {}}, 0.01)
     assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen)[1] is NAMED

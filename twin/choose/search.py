@@ -40,6 +40,7 @@ class SearchRules:
     forms: int = 3  # each in so many forms at the most
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
+    hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -95,6 +96,9 @@ class Searcher:
         for size in range(2, self.rules.most + 1):
             best = min(level, key=lambda f: f.mse, default=none)
             if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
+                break
+            # Of three causes that explain all, the best two explain two thirds, or more.
+            if size > 2 and best.mse - 1.0 > self.rules.hopeless * (retuned.mse - 1.0):
                 break
             level = self._extended(level, size)
             found += level

@@ -1,0 +1,48 @@
+"""A coarse reading that always rounds down is half a step off, whatever else is wrong with the valve."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from logs.recording import Recording
+from tests.twin.trials import DESIGN, staircase, trial_of
+from twin.catalog import effect
+from twin.events.scan import Events
+from twin.plant import Inserted, Plant
+from twin.rounding import rounding_down
+from twin.sensing import Sensing
+
+STEP_IN = 0.0021
+LATE = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.3,))
+
+
+def coarse(*inserted: Inserted, down: bool) -> tuple[Recording, Sensing]:
+    trial, _ = trial_of(Plant(DESIGN, inserted), staircase())
+    steps = trial.recording.position / STEP_IN
+    position = STEP_IN * (np.floor(steps) if down else np.round(steps))
+    none = np.zeros(position.size, dtype=bool)
+    seen = Sensing((Events({}, none, none),), {"sensor_quantization": {}}, STEP_IN)
+    return replace(trial.recording, position=position), seen
+
+
+@pytest.mark.parametrize("inserted", [(), (LATE,)])
+def test_rounding_down_is_half_a_step(inserted: tuple[Inserted, ...]) -> None:
+    recording, seen = coarse(*inserted, down=True)
+    (found,) = rounding_down([recording], Plant(DESIGN), seen)
+    assert found.values == pytest.approx((-0.5 * STEP_IN,))
+
+
+@pytest.mark.parametrize("inserted", [(), (LATE,)])
+def test_rounding_to_the_nearest_is_nothing(inserted: tuple[Inserted, ...]) -> None:
+    recording, seen = coarse(*inserted, down=False)
+    assert rounding_down([recording], Plant(DESIGN), seen) == ()
+
+
+def test_a_larger_zero_error_is_no_rounding() -> None:
+    recording, seen = coarse(down=False)
+    off = replace(recording, position=recording.position - 3.0 * STEP_IN)
+    error = Plant(DESIGN, (Inserted("lvdt_calibration", effect("lvdt_calibration").form("zero"), (-3.0 * STEP_IN,)),))
+    assert rounding_down([off], error, seen) == ()
