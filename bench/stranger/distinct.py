@@ -23,13 +23,14 @@ _PLAIN_CAUSES, _PLAIN_STAGES = ("lvdt_calibration",), ("ep",)
 
 
 def plain_directions(session: Session, seed: list[int]) -> NDArray[np.float64]:
-    """An orthonormal basis of what the plain numbers can change in the reading: shape (rows, 8)."""
+    """An orthonormal basis of what the plain numbers can change in the reading: shape (rows, at most 8)."""
     healthy_in = noise_free_reading(HEALTHY, session, seed)
     columns = [np.ones_like(healthy_in), healthy_in]
     for form in PARAMETER_FORMS:
         valve = form.build(HEALTHY, _NUDGE, np.random.default_rng(0))
         columns.append(noise_free_reading(valve, session, seed) - healthy_in)
-    return np.asarray(np.linalg.svd(np.column_stack(columns) / np.linalg.norm(columns, axis=1), False)[0])
+    felt = [column / np.linalg.norm(column) for column in columns if column.any()]  # a limit that is never reached is not
+    return np.asarray(np.linalg.svd(np.column_stack(felt), False)[0])
 
 
 def own_ratio(form: Form, changed_in: NDArray[np.float64], plain: NDArray[np.float64]) -> float:
