@@ -29,7 +29,9 @@ def plain_directions(session: Session, seed: list[int]) -> NDArray[np.float64]:
     for form in PARAMETER_FORMS:
         valve = form.build(HEALTHY, _NUDGE, np.random.default_rng(0))
         columns.append(noise_free_reading(valve, session, seed) - healthy_in)
-    felt = [column / np.linalg.norm(column) for column in columns if column.any()]  # a limit that is never reached is not
+    felt = [
+        column / np.linalg.norm(column) for column in columns if column.any()
+    ]  # a limit that is never reached is not
     return np.asarray(np.linalg.svd(np.column_stack(felt), False)[0])
 
 
