@@ -23,8 +23,10 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
+# BLIND=1 adds the forty frozen blind trials, which take minutes: CI does.
 test: lint
 	$(BIN)/python -m pytest -n 2 -m "not interop"
+	$(if $(BLIND),$(BIN)/python bench/blind_ci.py)
 
 docs: setup
 	$(BIN)/lostmotion explain --markdown > docs/effects.md
