@@ -26,6 +26,8 @@ _RANKED = 6
 NO_BETTER = 0.95
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
+#: ... and one that misses by less has none worth a word, when its only cause was taken back.
+SLIGHT = 1.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,9 +80,10 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     if not judgement.causes or sensing.accepted:
         return parts, judgement
-    if before <= floor:
+    no_better = after > NO_BETTER * before
+    if before <= floor or (no_better and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if after > NO_BETTER * before:
+    if no_better:
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
 

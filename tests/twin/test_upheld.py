@@ -32,6 +32,7 @@ def parts(before: float, retuned: float, after: float) -> GapParts:
     [
         ((3.0, 2.0, 0.2), "effect", 0.2),
         ((3.0, 2.0, 14.0), "unexplained", 2.0),  # the model with the cause is worse than the one without
+        ((1.2, 1.1, 1.3), "no_gap", 1.2),  # ... and there was next to nothing to explain
         ((0.9, 0.8, 0.5), "no_gap", 0.9),  # an error below the noise has no cause
     ],
 )
