@@ -22,6 +22,20 @@ if TYPE_CHECKING:
 SEEDS = 8
 NAMES = {"steady": "worst steady error [% of travel]", "peak": "worst momentary error [% of travel]"}
 
+BOUNDS = (
+    "Nothing on this bench excuses a miss: gauge and supply permit the goal in every scenario "
+    "(`control/permitted.py`), and friction sets no bound either, because a plate that slides stops where the "
+    "pressure stops. What stiction costs is time: no small push moves a plate that sticks, each correction is "
+    "a stroke of its own (0.3 psi x 0.19 in/psi is a jump of 10 % of travel, and back), and that the valve "
+    "sticks shows only after some pushes in vain. Where edges, calibration or dead time are not the design's, "
+    "the first moves are for learning. Two things were tried and are not used "
+    "(`python bench/dither_and_learning.py`): a square dither of 0.1 to 1 psi makes `brake` worse under "
+    "stiction (0.9 % and more instead of 0.6 %), shakes the stem and takes two to nine times the air; "
+    "iterative learning of one pressure per hold comes down to 0.1 to 0.3 % after four passes of the same "
+    "targets where the converter or the gauge is off, and stays above 0.4 % where the deadband is another, the "
+    "noise large or the valve sticks."
+)
+
 
 def draw_comparison(results: Sequence[Result], key: str, path: Path) -> None:
     """One score of every controller, one dot per scenario, into a file."""
@@ -97,19 +111,7 @@ def figure_brake() -> Entry:
         lambda canvas: _seeds(canvas, results),
         (7.2, 3.6),
         command=f"lostmotion compare -c brake --held-out --seeds {seeds}",
-        notes=(
-            "Nothing on this bench excuses a miss: gauge and supply permit the goal in every scenario "
-            "(`control/permitted.py`), and friction sets no bound either, because a plate that slides stops where the "
-            "pressure stops. What stiction costs is time: no small push moves a plate that sticks, each correction is "
-            "a stroke of its own (0.3 psi x 0.19 in/psi is a jump of 10 % of travel, and back), and that the valve "
-            "sticks shows only after some pushes in vain. Where edges, calibration or dead time are not the design's, "
-            "the first moves are for learning. Two things were tried and are not used "
-            "(`python bench/dither_and_learning.py`): a square dither of 0.1 to 1 psi makes `brake` worse under "
-            "stiction (0.9 % and more instead of 0.6 %), shakes the stem and takes two to nine times the air; "
-            "iterative learning of one pressure per hold comes down to 0.1 to 0.3 % after four passes of the same "
-            "targets where the converter or the gauge is off, and stays above 0.4 % where the deadband is another, the "
-            "noise large or the valve sticks.",
-        ),
+        notes=(BOUNDS,),
     )
 
 
