@@ -27,6 +27,10 @@ Rows = npt.NDArray[np.int64]
 MOST_ROWS = 20_000
 LOOK_ROWS = 12_000
 MOST_S = 2_400.0
+#: A record up to so long is looked at whole, in coarse steps [s], where the noise (share of travel) hides what they
+#: miss; up to so many rows none is left out.
+COARSE_S, COARSE_STEP_S, COARSE_NOISE = 6_000.0, 0.1, 8e-4
+COARSE_ROWS = 60_000
 #: Whatever the seconds, so few steps of simulation make no large record: a slow machine is read every ten seconds.
 MOST_STEPS = 60_000
 LOOK_S = 1_200.0
@@ -46,8 +50,9 @@ def look_at(case: Case) -> tuple[Case, list[DataNote]]:
     whole = sum(r.n for r in case.recordings)
     if rows == whole <= MOST_ROWS:
         return case, []
-    share = min(1.0, LOOK_ROWS / rows)
-    trials = tuple(_trial(case, span, share) for span in spans)
+    coarse_s = COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0
+    share = 1.0 if coarse_s > 0.0 and rows <= COARSE_ROWS else min(1.0, LOOK_ROWS / rows)
+    trials = tuple(_trial(case, span, share, coarse_s) for span in spans)
     seen = sum(t.recording.n for t in trials)
     stride = rows / max(seen, 1)
     look = replace(
@@ -84,13 +89,18 @@ def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: 
 def _spans(case: Case) -> tuple[Span, ...]:
     total_s = sum(r.duration_s for r in case.recordings)
     steps = sum(t.grid.n_fine for t in case.trials)
-    if total_s <= MOST_S or steps <= MOST_STEPS:
+    if total_s <= (COARSE_S if _hides_steps(case) else MOST_S) or steps <= MOST_STEPS:
         return tuple(Span(k, 0, r.n) for k, r in enumerate(case.recordings))
     spans: list[Span] = []
     for k, recording in enumerate(case.recordings):
         budget_s = max(LOOK_S * recording.duration_s / total_s, 100.0 * case.base.design.tau_s)
         spans += _windows(k, recording, budget_s)
     return tuple(spans)
+
+
+def _hides_steps(case: Case) -> bool:
+    """Whether the noise hides the error of coarse steps, 0.02 % of travel RMS."""
+    return case.sigma_y > COARSE_NOISE * case.travel
 
 
 def _windows(record: int, recording: Recording, budget_s: float) -> list[Span]:
@@ -118,14 +128,14 @@ def _liveliest(record: int, recording: Recording, begin_s: float, part_s: float,
     return best
 
 
-def _trial(case: Case, span: Span, share: float) -> Trial:
-    """The trial of one span, thinned to a `share` of its rows."""
+def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
+    """The trial of one span, thinned to a `share` of its rows, in steps no shorter than `coarse_s`."""
     whole = case.trials[span.record]
     recording = whole.recording.slice(span.start, span.stop)
     rows = kept_rows(recording.command, max(2, round(share * recording.n)))
     thin = thinned(recording, rows)
     bad = _false_rows(whole)[span.start : span.stop][rows]
-    step_s = fine_step_s(case.base.design, thin)
+    step_s = max(fine_step_s(case.base.design, thin), coarse_s)
     start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
     trial = make_trial(thin, step_s, bad, start.play if start.play != start.position else None)
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)

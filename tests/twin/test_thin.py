@@ -23,11 +23,15 @@ def toy() -> Recording:
     return record(Toy(), staircase(0.05, 10.0, levels), 0.05, seed=1, sigma=8e-4)
 
 
-def look(case: Case, monkeypatch: pytest.MonkeyPatch, most_rows: int = 1000, most_s: float = 1e9) -> Case:
+def look(
+    case: Case, monkeypatch: pytest.MonkeyPatch, most_rows: int = 1000, most_s: float = 1e9, coarse_s: float = 0.0
+) -> Case:
     monkeypatch.setattr(thin, "MOST_ROWS", most_rows)
     monkeypatch.setattr(thin, "LOOK_ROWS", most_rows)
     monkeypatch.setattr(thin, "MOST_S", most_s)
     monkeypatch.setattr(thin, "MOST_STEPS", 0)
+    monkeypatch.setattr(thin, "COARSE_S", coarse_s)
+    monkeypatch.setattr(thin, "COARSE_ROWS", most_rows)
     monkeypatch.setattr(thin, "LOOK_S", 100.0)
     monkeypatch.setattr(thin, "_WINDOW_S", 50.0)
     return look_at(case)[0]
@@ -93,6 +97,15 @@ def test_windows_are_spread_and_lively(toy: Recording, monkeypatch: pytest.Monke
     assert starts == sorted(starts)
     assert sum(r.duration_s for r in seen.recordings) < 0.95 * calm.duration_s
     assert seen.whole is not None
+
+
+def test_a_noisy_record_is_looked_at_whole_in_coarse_steps(toy: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
+    case = make_case([toy], DesignModel())
+    seen = look(case, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9)
+    assert len(seen.spans) == 1 and seen.recordings[0].duration_s == toy.duration_s
+    assert seen.trials[0].grid.n_fine < 0.7 * case.trials[0].grid.n_fine
+    quiet = replace(case, sigma_y=1e-5)
+    assert len(look(quiet, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9).spans) > 1
 
 
 def test_a_window_is_not_compared_before_the_stem_has_forgotten(
