@@ -135,7 +135,7 @@ def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned:
         return case.base
     if judgement.verdict == "unexplained":
         return retuned.plant
-    found = result.plant()
+    found = result.plant() if {c.name for c in judgement.causes} - set(sensing.accepted) else case.base
     return Plant(found.design, (*found.inserted, *sensing.inserted()))
 
 

@@ -78,14 +78,23 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
-    if not judgement.causes or sensing.accepted:
+    if not judgement.causes:
         return parts, judgement
+    if sensing.accepted:
+        return parts, _only_seen(judgement, sensing) if before <= floor else judgement
     no_better = after > NO_BETTER * before
     if before <= floor or (no_better and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
     if no_better:
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
+
+
+def _only_seen(judgement: Judgement, sensing: Sensing) -> Judgement:
+    """The judgement with those causes only that the readings themselves showed: there is no error for any other."""
+    causes = tuple(c for c in judgement.causes if c.name in sensing.accepted)
+    sets = tuple(s for s in judgement.confusable if s[0] in sensing.accepted)
+    return replace(judgement, verdict="effect" if len(causes) == 1 else "effects", causes=causes, confusable=sets)
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:

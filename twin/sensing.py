@@ -28,6 +28,8 @@ _LEAST_STEP = 1e-3
 _HELD, _HELD_NATS = 0.3, 100.0
 #: Share of readings that repeat the one before, above which the noise is taken from the others.
 _MOSTLY_HELD = 0.4
+#: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.
+_SINGLE, _STILL_SIGMAS = 5, 5.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,7 +62,8 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     rows = sum(r.n for r in recordings)
     false = sum(int(e.false_position.sum()) for e in events)
     drop = _strongest(events, "sensor_dropouts")
-    if drop.found and false >= 3 and false / rows > _LEAST_RATE and _false_beyond_motion(recordings, events, fastest):
+    enough = drop.found and false >= 3 and false / rows > _LEAST_RATE
+    if enough and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
         accepted["sensor_dropouts"] = dict(drop.estimates)
     quantization = _strongest(events, "sensor_quantization")
     step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
@@ -90,6 +93,17 @@ def _false_beyond_motion(recordings: Sequence[Recording], events: Sequence[Event
         between = np.interp(bad, good, recording.position[good]) if good.size else recording.position[bad]
         jumps.append(np.abs(recording.position[bad] - between) / (fastest * recording.period_s))
     return bool(np.median(np.concatenate(jumps)) > 1.5)
+
+
+def _false_at_rest(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:
+    """Whether false readings came singly while the stem stood: no lag lets it go and come back between two readings."""
+    single = 0
+    for recording, event in zip(recordings, events, strict=True):
+        around = np.lib.stride_tricks.sliding_window_view(recording.position, 7)[:, (0, 1, 2, 4, 5, 6)]
+        still = np.ptp(around, axis=1) < _STILL_SIGMAS * noise.position.sigma  # NaN compares false
+        alone = ~np.lib.stride_tricks.sliding_window_view(event.false_position, 7)[:, (0, 1, 2, 4, 5, 6)].any(axis=1)
+        single += int(np.count_nonzero(event.false_position[3:-3] & still & alone))
+    return single >= _SINGLE
 
 
 def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: float) -> Events:

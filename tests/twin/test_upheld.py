@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,6 +56,15 @@ def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, ve
 def test_what_the_readings_showed_needs_no_prediction() -> None:
     seen = Sensing((), {"sensor_quantization": {}}, 0.01)
     assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen)[1] is NAMED
+
+
+def test_beside_what_the_readings_showed_nothing_is_named_for_an_error_below_the_floor() -> None:
+    seen = Sensing((), {"sensor_quantization": {}}, 0.06)
+    coarse = Named("sensor_quantization", "sensor", 0.97, None, {})
+    both = replace(NAMED, verdict="effects", causes=(*NAMED.causes, coarse))
+    _, judgement = upheld(parts(0.99, 1.0, 0.9), both, 1.0, seen)
+    assert judgement.verdict == "effect" and judgement.causes == (coarse,) and judgement.confusable == ()
+    assert upheld(parts(3.0, 1.0, 0.9), both, 1.0, seen)[1] is both
 
 
 def test_an_effect_without_a_size_is_hollow() -> None:

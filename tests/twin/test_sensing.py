@@ -1,0 +1,42 @@
+"""False readings that are no larger than what a fast stem could do are told by coming singly while it stood."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from logs.recording import FloatArray, Recording
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin.noise.model import estimate_noise
+from twin.plant import Plant
+from twin.sensing import sense
+
+SPIKE_IN = 0.010  # a stem at the rate limit goes 0.012 in between two readings
+
+
+def recorded() -> Recording:
+    return trial_of(Plant(DESIGN), staircase())[0].recording
+
+
+def found(recording: Recording) -> set[str]:
+    return set(sense([recording], estimate_noise([recording]), DESIGN.travel, DESIGN.rate_limit).accepted)
+
+
+def spiked(position: FloatArray, rows: FloatArray) -> FloatArray:
+    moved = position.copy()
+    moved[rows.astype(int)] += SPIKE_IN
+    return moved
+
+
+@pytest.mark.parametrize(("count", "named"), [(40, True), (2, False)])
+def test_small_spikes_of_a_still_reading(count: int, named: bool) -> None:
+    recording = recorded()
+    rows = np.random.default_rng(5).choice(recording.n, count, replace=False)
+    assert SPIKE_IN > 15.0 * SIGMA
+    assert ("sensor_dropouts" in found(replace(recording, position=spiked(recording.position, rows)))) is named
+
+
+def test_a_healthy_reading_is_not_false() -> None:
+    assert "sensor_dropouts" not in found(recorded())
