@@ -10,10 +10,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
 
 _MATCH = 0.97  # share of time in which the commands must agree
+_LEAST_SHARE = 0.5  # of the rows that lie over each other
 _LEAST_S = 10.0
 _LEAST_ROWS = 100
 _MAX_PAIRS = 40
@@ -108,8 +110,20 @@ def _checked(first: Recording, second: Recording, shift_s: float) -> RepeatPair 
     # one row of slack: two runs rarely sample the edge of a step alike
     low, high = np.minimum(np.minimum(before, after), there), np.maximum(np.maximum(before, after), there)
     slack = 2e-3 * max(float(np.ptp(here)), 1e-9)
-    agree = (here >= low - slack) & (here <= high + slack)
-    return RepeatPair(first, second, span, shift_s) if float(np.mean(agree)) >= _MATCH else None
+    begin, end = _longest((here >= low - slack) & (here <= high + slack))
+    if end - begin < max(least, _LEAST_SHARE * rows.size):
+        return None
+    return RepeatPair(first, second, slice(span.start + begin, span.start + end), shift_s)
+
+
+def _longest(agree: npt.NDArray[np.bool_]) -> tuple[int, int]:
+    """The stretch with most agreeing rows of which `_MATCH` agree: what comes before or after is no repeat.
+
+    A conditioning stroke before the first of two sweeps is not repeated. Kadane's maximum subarray.
+    """
+    sums = np.concatenate([[0.0], np.cumsum(np.where(agree, 1.0 - _MATCH, -_MATCH))])
+    end = int(np.argmax(sums - np.minimum.accumulate(sums)))
+    return int(np.argmin(sums[: end + 1])), end
 
 
 def _grid(recording: Recording, period_s: float) -> FloatArray:
