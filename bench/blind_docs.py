@@ -1,7 +1,7 @@
-"""Writes the generated part of docs/blind.md: `python bench/blind_docs.py CHECK... [--ablations DIR]`.
+"""Writes the generated part of docs/blind.md: `python bench/blind_docs.py CHECK... [--ablations DIR] [--crime FILE]`.
 
-Each CHECK is the folder of a finished `lostmotion blind`. Everything between the two markers of the document is
-replaced; the text around them is written by hand.
+Each CHECK is the folder of a finished `lostmotion blind`. What is made anew comes first; sections of other checks stay
+below it as they are, because a published check is never rewritten. The text around the markers is written by hand.
 """
 
 from __future__ import annotations
@@ -104,17 +104,40 @@ def ablations(folder: Path) -> Iterator[str]:
     yield from table(["taken away", "all right", "first cause true", "false cause on a healthy valve", "broken"], made)
 
 
+def crime(path: Path) -> Iterator[str]:
+    """What the diagnosis scores on records that its own equations made."""
+    from bench.inverse_crime import table_rows
+
+    yield "## Inverse crime, for contrast only\n"
+    yield (
+        "Records simulated with the very code and forms that the candidates use, with white noise "
+        "(`python bench/inverse_crime.py`). No figure of this table says anything about a valve; the distance to the "
+        "tables above is what not knowing the truth costs.\n"
+    )
+    lines = [json.loads(text) for text in path.read_text(encoding="utf-8").splitlines()]
+    yield from table(["", "figure", "95 % interval"], table_rows(lines))
+
+
+def kept(old: str, new: list[str]) -> list[str]:
+    """The sections of the generated part that are not made anew."""
+    sections = ["## " + part for part in old.split("\n## ")[1:]]
+    made = {part.split("\n")[0].partition(",")[0] for part in new}
+    return [part for part in sections if part.split("\n")[0].partition(",")[0] not in made]
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("checks", nargs="+", type=Path)
     parser.add_argument("--ablations", type=Path)
+    parser.add_argument("--crime", type=Path)
     asked = parser.parse_args()
     text = DOCUMENT.read_text(encoding="utf-8")
     head, tail = text.split(BEGIN)[0], text.split(END)[1]
-    parts = [line for folder in asked.checks for line in section(folder)]
-    if asked.ablations:
-        parts += ablations(asked.ablations)
-    DOCUMENT.write_text("\n".join([head + BEGIN, "", *parts, END]) + tail, encoding="utf-8")
+    parts = ["\n".join(section(folder)) for folder in asked.checks]
+    parts += ["\n".join(ablations(asked.ablations))] if asked.ablations else []
+    parts += ["\n".join(crime(asked.crime))] if asked.crime else []
+    parts += kept(text.split(BEGIN)[1].split(END)[0], parts)
+    DOCUMENT.write_text("\n\n".join([head + BEGIN, *(part.strip() for part in parts), END]) + tail, encoding="utf-8")
     print(f"wrote {DOCUMENT}")
 
 

@@ -28,6 +28,10 @@ NO_BETTER = 0.95
 DOUBTFUL = 1.6
 #: ... and one that misses by less has none worth a word, when its only cause was taken back.
 SLIGHT = 1.3
+#: A cause below this probability is not named alone.
+LIKELY = 0.45
+#: Of a gap of so many times the noise, causes that leave this share of the squares do not explain it.
+CLEAR, LEFT = 2.5, 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +89,19 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
     no_better = after > NO_BETTER * before
     if before <= floor or (no_better and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if no_better:
+    if no_better or _doubted(judgement) or _leaves(before, after, floor):
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
+
+
+def _doubted(judgement: Judgement) -> bool:
+    """Whether none of the named causes is nearly as likely as not."""
+    return max(c.probability for c in judgement.causes) < LIKELY
+
+
+def _leaves(before: float, after: float, floor: float) -> bool:
+    """Whether the causes leave too much of a clear gap where no fit has seen it."""
+    return before > CLEAR * floor and after**2 - floor**2 > LEFT * (before**2 - floor**2)
 
 
 def _only_seen(judgement: Judgement, sensing: Sensing) -> Judgement:

@@ -6,11 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from logs.recording import Recording
 from tests.twin.toy_valve import Toy, record, staircase
 from twin.noise.model import estimate_noise, poisson_tail
-from twin.noise.repeats import find_repeats
+from twin.noise.repeats import _longest, find_repeats
 from twin.noise.robust import autocorrelation, autoregression, correlation_samples, robust_sigma
 from twin.noise.still import even_windows, fast_memory, given_back, still_pieces
 
@@ -100,6 +102,27 @@ def test_a_period_inside_one_record_is_a_repeat() -> None:
     difference = pairs[0].difference("position")
     assert difference is not None
     assert robust_sigma(difference) == pytest.approx(SIGMA, rel=0.12)
+
+
+def test_a_repeat_is_found_behind_a_stroke_that_is_not_repeated() -> None:
+    stroke, sweep = staircase(DT, 20.0, [12.0, 4.0, 6.5]), staircase(DT, 15.0, LEVELS[:6])
+    command = np.concatenate([stroke, sweep, np.full(80, 4.5), sweep])
+    (pair,) = find_repeats([record(Toy(), command, DT, 1, SIGMA)])
+    assert pair.shift_s == pytest.approx((sweep.size + 80) * DT)
+    assert pair.rows.start == pytest.approx(stroke.size, abs=40)
+    assert pair.rows.stop - pair.rows.start == pytest.approx(sweep.size, abs=80)
+
+
+@given(st.lists(st.booleans(), min_size=1, max_size=60))
+def test_the_longest_agreeing_stretch(agree: list[bool]) -> None:
+    rows = np.array(agree)
+    begin, end = _longest(rows)
+
+    def worth(a: int, b: int) -> float:
+        return float(np.sum(np.where(rows[a:b], 0.03, -0.97)))
+
+    every = [worth(a, b) for a in range(rows.size + 1) for b in range(a, rows.size + 1)]
+    assert worth(begin, end) == pytest.approx(max(every))
 
 
 def test_shifted_repeats_align_and_different_commands_do_not() -> None:

@@ -34,6 +34,8 @@ def parts(before: float, retuned: float, after: float) -> GapParts:
     [
         ((3.0, 2.0, 0.2), "effect", 0.2),
         ((3.0, 2.0, 14.0), "unexplained", 2.0),  # the model with the cause is worse than the one without
+        ((3.0, 2.0, 1.8), "unexplained", 2.0),  # too much is left of a clear gap
+        ((1.8, 1.7, 1.3), "effect", 1.3),  # of a slight one nobody can say
         ((1.2, 1.1, 1.3), "no_gap", 1.2),  # ... and there was next to nothing to explain
         ((0.9, 0.8, 0.5), "no_gap", 0.9),  # an error below the noise has no cause
     ],
@@ -51,6 +53,13 @@ def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, ve
     kept, judgement = upheld(parts(before, 0.8 * before, before), nothing, 1.0, NOTHING_SEEN)
     assert judgement.verdict == verdict
     assert kept.after[0] == pytest.approx(before if verdict == "no_gap" else 0.8 * before)
+
+
+def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
+    doubted = replace(NAMED, causes=(replace(NAMED.causes[0], probability=0.3),))
+    assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN)[1].verdict == "unexplained"
+    beside = replace(doubted, causes=(*NAMED.causes, *doubted.causes))
+    assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN)[1] is beside
 
 
 def test_what_the_readings_showed_needs_no_prediction() -> None:
