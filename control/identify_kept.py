@@ -14,6 +14,7 @@ from control.identify_valve import Freedom, Track, ValveFit, top_speed
 from logs.recording import FloatArray
 
 VAGUE = 0.3  # an interval whose half width is more than this share of the number's size tells nothing
+BOTH_WAYS = 0.05  # of the longer way, that the shorter must be before anything can be said of two curves
 VAGUE_ONSET = 0.15  # likewise for a1 and a2, as a share of the range of pressures
 
 
@@ -38,6 +39,13 @@ class Facts:
     def highest(self) -> float:
         """The highest position, without its noise."""
         return max(float(x.max()) for x in self.fit.predict(self.tracks))
+
+    @property
+    def both_ways(self) -> bool:
+        """Whether the stem went both ways: a record of one stroke shows one curve, whatever the play."""
+        moves = [np.diff(x) for x in self.fit.predict(self.tracks)]
+        ways = sum(float(np.maximum(m, 0.0).sum()) for m in moves), sum(float(np.maximum(-m, 0.0).sum()) for m in moves)
+        return min(ways) > BOTH_WAYS * max(ways)
 
 
 def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]) -> tuple[DesignModel, list[Estimate]]:
@@ -74,7 +82,10 @@ def _onsets(
     unit, default_width = facts.unit_p, facts.base.deadband if facts.unit_p == "psi" else 0.0
     a1, a2 = found.get("a1"), found.get("a2")
     first = facts.fit.numbers[0]
-    if a1 is not None and facts.fit.numbers[1] >= first:  # curves that cross act as one: there is no play
+    crossed = a1 is not None and facts.fit.numbers[1] >= first
+    if crossed and not facts.both_ways:
+        a2 = None
+    elif a1 is not None and crossed:  # curves that cross act as one: there is no play
         notes.append("no backlash to be seen: one curve serves both directions, the deadband is 0")
         return [
             Estimate("a1", a1.value, a1, unit, "fit"),

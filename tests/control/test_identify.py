@@ -160,6 +160,17 @@ def test_what_cannot_be_identified_is_refused_in_words() -> None:
         identify([])
 
 
+def test_one_stroke_says_nothing_of_a_play() -> None:
+    # One step up shows one curve; that no play was seen is no proof that there is none.
+    time_s = np.arange(0.0, 12.0, 0.1)
+    rise = np.where(time_s > 4.0, 0.2 * (1.0 - np.exp(-(time_s - 4.0) / 2.7)), 0.0)
+    noise = np.random.default_rng(1).normal(0.0, 1.0, (2, time_s.size))
+    command = np.where(time_s > 4.0, 7.5, 7.0)
+    stroke = Recording("stroke", time_s, command, 0.1 + rise + 7e-4 * noise[0], command + 0.01 * noise[1])
+    with pytest.raises(JobFailed, match="sweep through both"):
+        identify([stroke])
+
+
 def test_the_result_goes_into_json_and_names_what_is_missing() -> None:
     found = identify([sweep(0.5)])
     plain = found.to_plain()
