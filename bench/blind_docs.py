@@ -31,6 +31,12 @@ def section(folder: Path) -> Iterator[str]:
     yield f"Code frozen at commit `{protocol['git']}`, digest `{protocol['code'][:16]}`. Again, from the same commit:\n"
     command = f"lostmotion blind --trials {scores['trials']} --seed {protocol['seed']} --family {protocol['family']}"
     yield f"    {command}\n"
+    sealed = len(protocol["commitments"])
+    if sealed > scores["trials"]:
+        yield (
+            f"Of {sealed} that were sealed before the first one ran, {scores['trials']} are shown: all that were done\n"
+            "when time was up. Nothing was changed in between, and no trial was left out.\n"
+        )
     if scores["broken"]:
         yield f"{len(scores['broken'])} trials ended in an error and are in no figure: {scores['broken']}\n"
     groups = {"all": scores["all"]} | (scores["families"] if len(scores["families"]) > 1 else {})
