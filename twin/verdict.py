@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from twin.choose.decide import Decision
 from twin.choose.weigh import Weighed, Weights, weigh
 from twin.diagnosis import Cause, Estimate, Ranked, Verdict
@@ -19,6 +21,8 @@ MATERIAL_SHARE = 0.25
 _EVENT_PROBABILITY = 0.97
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave.
 MISSED_FALSE = 4.0
+#: Standard deviation of a size that comes from its form being a model, as a share of the size (docs/calibration.md).
+FORM_ERROR = 0.015
 #: Mean squared residual, noise = 1, that has to be common to repeats before it is a gap of the model.
 COMES_BACK = 1.0
 
@@ -97,10 +101,11 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
 def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
     """Estimates of everything a hypothesis accuses, by (cause, parameter), with 95 % intervals.
 
-    The intervals allow for the correlation and the excess of the residual.
+    The intervals allow for the correlation and the excess of the residual, and for a form that is not quite true.
     """
-    deviations = fit.deviations(scale=(phi * max(fit.mse, 1.0)) ** 0.5)
     values = fit.values()
+    sizes = values - np.array([u.centre for u in fit.space.unknowns])
+    deviations = np.hypot(fit.deviations(scale=(phi * max(fit.mse, 1.0)) ** 0.5), FORM_ERROR * sizes)
     bounds = [(u.centre + u.unit * u.lower, u.centre + u.unit * u.upper) for u in fit.space.unknowns]
     design = fit.space.base.design
     found: dict[tuple[str, str], Estimate] = {}

@@ -19,7 +19,7 @@ from twin.fit.space import Cause, make_space
 from twin.gap import GapParts, upheld
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
-from twin.verdict import Judgement, estimates
+from twin.verdict import FORM_ERROR, Judgement, estimates
 
 NAMED = Judgement("effect", (Named("creep", "actuator", 0.9, None, {}),), (), (("creep", "stiction"),))
 NOTHING_SEEN = Sensing((), {}, 0.0)
@@ -85,6 +85,20 @@ def test_an_effect_without_a_size_is_hollow() -> None:
         found = fit(channel, make_space(Plant(DesignModel()), (cause,), channel.numbers, Scales()), [np.zeros(6)])
         # a start at nothing stays there when nothing is missing, noise aside
         assert hollow(found, 4.0) is empty
+
+
+def test_an_interval_allows_for_a_form_that_is_not_quite_true() -> None:
+    form = effect("linkage_lost_motion").form("play")
+    truth = Inserted("linkage_lost_motion", form, (0.04,))
+    trial, _ = trial_of(Plant(DESIGN, (truth,)), staircase())
+    channel = position_channel([trial], SIGMA)
+    cause = Cause("linkage_lost_motion", effect("linkage_lost_motion"), form)
+    found = fit(channel, make_space(Plant(DESIGN), (cause,), channel.numbers, Scales()), [np.full(6, 1e-3)])
+    estimate = estimates(found, 1.0)[("linkage_lost_motion", form.parameters[0].name)]
+    low, high = estimate.ci95
+    assert low < 0.04 < high
+    # the noise alone would leave a tenth of this
+    assert (high - low) / estimate.value == pytest.approx(2.0 * 1.96 * FORM_ERROR, rel=0.2)
 
 
 def test_intervals_end_where_the_parameter_does() -> None:
