@@ -24,6 +24,8 @@ Progress = Callable[[str, float], None]
 _RANKED = 6
 #: Of the error before; a model that leaves more has explained nothing.
 NO_BETTER = 0.95
+#: Of the noise; a design that misses by less has no gap.
+HARDLY = 1.1
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
 #: ... and one that misses by less has none worth a word, when its only cause was taken back.
@@ -87,7 +89,7 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
     if sensing.accepted:
         return parts, _only_seen(judgement, sensing) if before <= floor else judgement
     no_better = after > NO_BETTER * before
-    if before <= floor or (no_better and before < SLIGHT * floor):
+    if before <= HARDLY * floor or (no_better and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
     if no_better or _doubted(judgement) or _leaves(before, after, floor):
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
