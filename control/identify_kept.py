@@ -81,17 +81,10 @@ def _onsets(
     """a1, a2 and the deadband; where one curve is not in the record it is put at the default's distance."""
     unit, default_width = facts.unit_p, facts.base.deadband if facts.unit_p == "psi" else 0.0
     a1, a2 = found.get("a1"), found.get("a2")
-    first = facts.fit.numbers[0]
-    crossed = a1 is not None and facts.fit.numbers[1] >= first
-    if crossed and not facts.both_ways:
+    if a1 is not None and facts.fit.numbers[1] >= facts.fit.numbers[0]:  # curves that cross act as one
+        if facts.both_ways:
+            return _no_play(a1, unit, notes)
         a2 = None
-    elif a1 is not None and crossed:  # curves that cross act as one: there is no play
-        notes.append("no backlash to be seen: one curve serves both directions, the deadband is 0")
-        return [
-            Estimate("a1", a1.value, a1, unit, "fit"),
-            Estimate("a2", a1.value, a1, unit, "fit"),
-            Estimate("deadband", 0.0, Interval(0.0, 0.0, 2.0 * a1.half_width), unit, "fit"),
-        ]
     if a1 is not None and a2 is not None:
         half = reach * float(np.sqrt(max(0.0, spread[0, 0] + spread[1, 1] - 2.0 * spread[0, 1])))
         width = a1.value - a2.value
@@ -116,6 +109,15 @@ def _onsets(
         Estimate("a1", base.a1, None, unit, "kept"),
         Estimate("a2", base.a2, None, unit, "kept"),
         Estimate("deadband", base.deadband, None, unit, "kept"),
+    ]
+
+
+def _no_play(a1: Interval, unit: str, notes: list[str]) -> list[Estimate]:
+    notes.append("no backlash to be seen: one curve serves both directions, the deadband is 0")
+    return [
+        Estimate("a1", a1.value, a1, unit, "fit"),
+        Estimate("a2", a1.value, a1, unit, "fit"),
+        Estimate("deadband", 0.0, Interval(0.0, 0.0, 2.0 * a1.half_width), unit, "fit"),
     ]
 
 
