@@ -25,9 +25,14 @@ class Pace:
     def char_s(self) -> float:
         return self.bits_per_char / self.baud
 
+    @property
+    def silence_s(self) -> float:
+        """One t3.5 [s]: what ends a frame."""
+        return rtu_idle_s(self.baud, self.bits_per_char)
+
     def reply_starts_s(self, request_arrived_s: float, request_bytes: int) -> float:
         """When a slave may start to answer: the request has crossed the wire, and the line was silent after it."""
-        silence_s = rtu_idle_s(self.baud, self.bits_per_char) if self.turnaround_s is None else self.turnaround_s
+        silence_s = self.silence_s if self.turnaround_s is None else self.turnaround_s
         return request_arrived_s + request_bytes * self.char_s + silence_s
 
 

@@ -9,12 +9,15 @@ import threading
 from collections.abc import Callable
 
 from hal.clock import Clock
+from hal.promptly import short_turns
+from hal.vigil import Vigil
 from sim_device.faulty_line import FaultyLine
 from sim_device.framer import RequestFramer
 from sim_device.line import Line
 from sim_device.pacing import Pace, emit, sharpen_timer
 
 _WAKE_EARLY_S = 150e-6  # what a thread needs to wake up, at most, on a machine with nothing else to do
+_LOOKS_PER_SILENCE = 1.3e6  # a look takes about a microsecond: somewhat longer than the silence that a master keeps
 
 
 class Stop:
@@ -63,16 +66,23 @@ class Responder:
         self._framer = RequestFramer(idle_reset_s)
         self._on_quiet = on_quiet
         self._quiet_s = quiet_s
+        self._vigil = Vigil(int(_LOOKS_PER_SILENCE * pace.silence_s) if pace is not None else 0)
 
     def serve(self, fd: int, *, until_eof: bool) -> None:
         """Answers until the stop is set, or the far end closes (`until_eof`: a socket; a pty waits for the next)."""
-        if self._pace is not None:
-            sharpen_timer()
+        if self._pace is None:
+            self._serve(fd, until_eof)
+            return
+        sharpen_timer()
+        with short_turns():  # a wire waits for nobody
+            self._serve(fd, until_eof)
+
+    def _serve(self, fd: int, until_eof: bool) -> None:
         poll = select.poll()
         poll.register(fd, select.POLLIN)
         poll.register(self._stop.read_fd, select.POLLIN)
         while not self._stop.is_set():
-            ready = poll.poll(self._patience_ms())
+            ready = self._awake(poll) or poll.poll(self._patience_ms())
             if self._stop.is_set():
                 return
             now_s = self._clock.now_s()
@@ -93,6 +103,12 @@ class Responder:
                 self._line.saw_damage(self._framer.damaged - damaged)
             for frame in frames:
                 self._answer(fd, frame, now_s)
+
+    def _awake(self, poll: select.poll) -> list[tuple[int, int]] | None:
+        """What is ready at once or soon. A wire's time starts when the master speaks, not when a slave woke up."""
+        if self._pace is None or self._framer.pending:
+            return None
+        return self._vigil.keep(lambda: poll.poll(0))
 
     def _patience_ms(self) -> float | None:
         if self._framer.pending:

@@ -13,6 +13,7 @@ from twin.case import Case, Margin, make_case, widened
 from twin.catalog import effects
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
+from twin.choose.trim import trimmed
 from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
 from twin.closure import gap, rms
@@ -20,7 +21,8 @@ from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, heldout_parts, upheld
+from twin.gap import GapParts, upheld
+from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
 from twin.noise.model import estimate_noise
@@ -36,7 +38,7 @@ from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
 from twin.unexplained import residual_signature
-from twin.verdict import Judgement, pronounce
+from twin.verdict import Judgement
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
 
@@ -105,14 +107,20 @@ def diagnose(
     judgement: Judgement | None = None
     try:
         result = judge(look, settings.search, settings.rules, stage.told(progress))
+        sure = tuple(trimmed(d, settings.rules, settings.weights) for d in result.decisions)
+        result = replace(result, decisions=sure)
         retuned = retuned_fit(look)
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
         ep_share = where.stage["ep"].value if where.stage else 0.0
         loud = disturbance(case, settings.margin.position)
-        judgement = pronounce(result, sensing, ep_share, settings.weights, loud)
+        hearing = Hearing(look, retuned, sensing, ep_share, settings.weights, loud)
+        judgement = hearing.judgement(result)
         progress("held-out gap", 0.0)
-        parts = heldout_parts(look, result, judgement, retuned, sensing, stage.told(progress))
+        needed, judgement, parts = hearing.held_out(result, judgement, stage.told(progress))
+        if needed is not result:
+            result, everything = needed, replace(everything, decisions=needed.decisions)
+            where = whereabouts(case, everything, settings.seed)
         parts, judgement = upheld(parts, judgement, case.sigma_y, sensing)
         final = _final_plant(case, result, judgement, retuned, sensing)
         diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)

@@ -40,7 +40,8 @@ class Parameter:
     """One number of a form. Bounds, starts and prior are in psi, in and s of the thesis's valve, and scale with others.
 
     `starts` are the values that the fit tries first; `scale` is the size of a large effect and the spread of the prior;
-    the neutral value (no effect) is `neutral`. `smooth` is False where the response jumps with the parameter.
+    the neutral value (no effect) is `neutral`. `smooth` is False where the response jumps with the parameter; its range
+    of starts is then looked at in `looks` places.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Parameter:
     neutral: float = 0.0
     smooth: bool = True
     size: bool = True  # False for shape parameters (a time constant of a creep) that say nothing about the magnitude
+    looks: int = 28
 
 
 @dataclass(frozen=True, slots=True)
@@ -143,13 +145,15 @@ class Form:
     """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units.
 
     `starts_for(time_s, reading, scales)` gives the values (in record units) that a fit to this record tries first,
-    where the parameters' own starts would be too many or too coarse.
+    where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
+    recordings, in which it would have had to happen alike.
     """
 
     name: str
     parameters: tuple[Parameter, ...]
     apply: Apply
     starts_for: StartsFor | None = None
+    once: bool = False
 
 
 @dataclass(frozen=True, slots=True)

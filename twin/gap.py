@@ -10,9 +10,11 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.case import Case
 from twin.choose.decide import Decision
+from twin.choose.trim import LIKELY, belief
 from twin.closure import rms
 from twin.fit.channel import chain_channel
-from twin.fit.fitting import Fit
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import make_space
 from twin.heldout import predict_heldout
 from twin.sensing import Sensing
 from twin.stages import StageResult
@@ -24,15 +26,16 @@ Progress = Callable[[str, float], None]
 _RANKED = 6
 #: Of the error before; a model that leaves more has explained nothing.
 NO_BETTER = 0.95
+#: Of the error after; a cause without which the error is smaller than that is not needed.
+IDLE = 1.03
 #: Of the noise; a design that misses by less has no gap.
 HARDLY = 1.1
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
 #: ... and one that misses by less has none worth a word, when its only cause was taken back.
 SLIGHT = 1.3
-#: A cause below this probability is not named alone.
-LIKELY = 0.45
-#: Of a gap of so many times the noise, causes that leave this share of the squares do not explain it.
+#: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
+#: several that leave half of that: together they can imitate more.
 CLEAR, LEFT = 2.5, 0.2
 
 
@@ -74,6 +77,20 @@ def heldout_parts(
     return GapParts(before, again, after, without, alone)
 
 
+def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, travel: float) -> str | None:
+    """The cause behind the pressure without which unseen data are predicted as well as with it, if there is one.
+
+    A cause of the converter has the pressure to show for itself, which this error is not about; and one that stands
+    alone is judged by `upheld`.
+    """
+    behind = {name for d in result.decisions if d.findings.channel.name != "pressure" for name in d.names}
+    after = 100.0 / travel * rms(parts.after)
+    spare = [c.name for c in judgement.causes if c.name in behind and parts.without.get(c.name, np.inf) < IDLE * after]
+    if len(judgement.causes) < 2 or not spare:
+        return None
+    return min(spare, key=lambda name: parts.without[name])
+
+
 def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
@@ -88,22 +105,24 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
         return parts, judgement
     if sensing.accepted:
         return parts, _only_seen(judgement, sensing) if before <= floor else judgement
-    no_better = after > NO_BETTER * before
-    if before <= HARDLY * floor or (no_better and before < SLIGHT * floor):
+    vain = after > NO_BETTER * before or _doubted(judgement)
+    if before <= HARDLY * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if no_better or _doubted(judgement) or _leaves(before, after, floor):
+    if vain or _leaves(before, after, floor, len(judgement.causes)):
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
 
 
 def _doubted(judgement: Judgement) -> bool:
-    """Whether none of the named causes is nearly as likely as not."""
-    return max(c.probability for c in judgement.causes) < LIKELY
+    """Whether none of the named causes is, with its twins, nearly as likely as not."""
+    probability = {r.name: r.probability for r in judgement.ranking} | {c.name: c.probability for c in judgement.causes}
+    return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
 
 
-def _leaves(before: float, after: float, floor: float) -> bool:
+def _leaves(before: float, after: float, floor: float, causes: int) -> bool:
     """Whether the causes leave too much of a clear gap where no fit has seen it."""
-    return before > CLEAR * floor and after**2 - floor**2 > LEFT * (before**2 - floor**2)
+    share = LEFT if causes == 1 else 0.5 * LEFT
+    return before > CLEAR * floor and after**2 - floor**2 > share * (before**2 - floor**2)
 
 
 def _only_seen(judgement: Judgement, sensing: Sensing) -> Judgement:
@@ -139,11 +158,22 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
         smaller = [f for f in (decision.findings.none, *decision.findings.fits) if set(f.names) == kept]
         if name not in decision.names:
             fits[decision] = decision.accepted
+        elif name.startswith("parameter:") and kept:
+            fits[decision] = _as_designed(decision, name, case)
         elif smaller and kept:
             fits[decision] = min(smaller, key=lambda f: f.mse)
         elif not kept:
             fits[decision] = decision.findings.none
     return _predicted(case, fits)
+
+
+def _as_designed(decision: Decision, name: str, case: Case) -> Fit:
+    """The accepted causes less an accused number, which may not ride along either."""
+    accepted = decision.accepted
+    causes = [c for c in accepted.space.causes if c.name != name]
+    numbers = [n for n in accepted.space.numbers if f"parameter:{n}" != name]
+    space = make_space(accepted.space.base, causes, numbers, case.scales)
+    return fit(decision.findings.channel, space, starts_of(space, [accepted]), rounds=8)
 
 
 def _alone(case: Case, result: StageResult, named: list[Decision], percent: float) -> dict[str, float]:

@@ -22,6 +22,8 @@ from twin.stages import combined
 FOLDS = 2
 BLOCKS = 16
 _LONG_S = 20.0
+#: What the rows of a fold say nothing about stays within so many standard deviations of where the whole record put it.
+_LOOSE = 20.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,11 +71,21 @@ def _fold_of_rows(time_s: FloatArray) -> npt.NDArray[np.int64]:
 
 
 def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArray, rounds: int = 5) -> list[Fit]:
-    """The same hypotheses fitted again, from where they ended, on the rows with weight only."""
+    """The same hypotheses fitted again, from where they ended, on the rows with weight only.
+
+    A supply that is met in a single block cannot be learned from the others; that is no evidence against it. So every
+    unknown is tied to where it ended, but so loosely that whatever these rows do say about it outweighs the tie.
+    """
     return [
-        fit(channel, one.space, [one.z], rounds=rounds, weights=weights)
+        fit(channel, one.space, [one.z], rounds=rounds, weights=weights, anchor=_tie(one))
         for one, channel in zip(fits, channels, strict=True)
     ]
+
+
+def _tie(one: Fit) -> tuple[FloatArray, FloatArray]:
+    units = np.abs([u.unit for u in one.space.unknowns])
+    deviations = one.deviations(max(one.mse, 1.0) ** 0.5) / units
+    return one.z, np.maximum(_LOOSE * deviations, 1e-6)
 
 
 def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:

@@ -22,6 +22,8 @@ from twin.plant import Inserted
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
+#: ... unless false readings alone make an error of so many times the noise.
+_LOUD = 3.0
 #: A step is an effect when it is coarser than the noise and than this share of travel.
 _LEAST_STEP = 1e-3
 #: Held readings are an effect of their own when they are this share of all, with this much evidence [nats].
@@ -62,7 +64,8 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     rows = sum(r.n for r in recordings)
     false = sum(int(e.false_position.sum()) for e in events)
     drop = _strongest(events, "sensor_dropouts")
-    enough = drop.found and false >= 3 and false / rows > _LEAST_RATE
+    often = false >= 3 and false / rows > _LEAST_RATE
+    enough = (drop.found and often) or _loud(recordings, events, noise)
     if enough and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
         accepted["sensor_dropouts"] = dict(drop.estimates)
     quantization = _strongest(events, "sensor_quantization")
@@ -73,6 +76,12 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if stale.found and stale.log_likelihood_ratio > _HELD_NATS and stale.estimates["hold_fraction"].value > _HELD:
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     return Sensing(events, accepted, step)
+
+
+def _loud(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:
+    """Whether the false readings, few as they are, make an error far above the noise of all readings together."""
+    jumps = np.concatenate(_jumps(recordings, events))
+    return float(np.sum(jumps**2)) > _LOUD**2 * noise.position.sigma**2 * sum(r.n for r in recordings)
 
 
 def _strongest(events: Sequence[Events], name: str) -> Evidence:
@@ -86,13 +95,20 @@ def _noise_without(noise: NoiseModel, step: float) -> float:
 
 def _false_beyond_motion(recordings: Sequence[Recording], events: Sequence[Events], fastest: float) -> bool:
     """Whether the typical false reading lies further off than the stem could have gone and come back."""
+    periods = zip(_jumps(recordings, events), recordings, strict=True)
+    steps = np.concatenate([jumps / (fastest * recording.period_s) for jumps, recording in periods])
+    return bool(steps.size and np.median(steps) > 1.5)
+
+
+def _jumps(recordings: Sequence[Recording], events: Sequence[Events]) -> list[np.ndarray]:
+    """How far each false reading lies from the line between its good neighbours, per recording [position]."""
     jumps = []
     for recording, event in zip(recordings, events, strict=True):
         good = np.flatnonzero(~event.false_position & np.isfinite(recording.position))
         bad = np.flatnonzero(event.false_position & np.isfinite(recording.position))
         between = np.interp(bad, good, recording.position[good]) if good.size else recording.position[bad]
-        jumps.append(np.abs(recording.position[bad] - between) / (fastest * recording.period_s))
-    return bool(np.median(np.concatenate(jumps)) > 1.5)
+        jumps.append(np.abs(recording.position[bad] - between))
+    return jumps
 
 
 def _false_at_rest(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:

@@ -79,7 +79,10 @@ S_HOLD_S = 9  # refresh period of the reading [s]
 S_HOLD_PHASE_S = 10
 S_STEP = 11  # resolution of the reading [position]
 S_TRAVEL = 12  # travel that bow and swing refer to [position]
-S_COUNT = 13
+S_WANDER_S = 13  # time between the knots of a wandering zero [s]; 0: it does not wander
+S_KNOTS = 14  # the zero at each of the knots after the start [position]
+KNOTS = 10
+S_COUNT = S_KNOTS + KNOTS
 
 FOREVER = 1e30
 

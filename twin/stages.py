@@ -12,6 +12,7 @@ import numpy as np
 
 from twin.case import Case
 from twin.choose.decide import Decision, DecisionRules, decide
+from twin.choose.lean import leaning
 from twin.choose.search import Searcher, SearchRules
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit
@@ -88,4 +89,4 @@ def _judge(
     case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress, floor: float = 1.0
 ) -> Decision:
     findings = Searcher(channel, case.base, case.scales, search, progress).run()
-    return decide(findings, rules, floor)
+    return leaning(decide(findings, rules, floor), case.scales)

@@ -76,12 +76,14 @@ def on_everything(case: Case, result: StageResult) -> StageResult:
 
 def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int) -> DataNote:
     seen = sum(t.recording.n for t in trials)
-    where = "all over it"
+    where = f"on {seen} rows all over it"
     if rows < whole:
-        where = f"in {len(spans)} windows spread over it; slow changes are judged within a window only"
+        where = f"on {seen} rows in {len(spans)} windows spread over it; slow changes are judged within a window only"
+    elif seen == whole:
+        where = f"on all of them in steps of {COARSE_STEP_S:g} s"
     return DataNote(
         f"a large record: {whole} rows, {sum(r.duration_s for r in case.recordings):.4g} s",
-        f"causes are searched on {seen} rows {where}; the gap is computed on all rows",
+        f"causes are searched {where}; the gap is computed on all rows",
         whole - seen,
     )
 

@@ -11,50 +11,14 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.case import make_case
+from tests.twin.judged import a_record, judged
 from twin.catalog import effects
-from twin.choose.decide import DecisionRules
 from twin.choose.score import make_yardstick, student_log_likelihood, whitening_filter
-from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.effect import Effect
 from twin.explain import typical_values
 from twin.fit.least_squares import descend, minimise
 from twin.plant import Inserted, Plant
-from twin.sensing import sense
-from twin.simulate import simulate_recording
-from twin.stages import StageResult, judge
-from twin.verdict import Judgement, pronounce
-
-_NOISE_IN, _NOISE_PSI = 0.0004, 0.008
-
-
-def _command(n: int) -> FloatArray:
-    """Random steps over both curves, held long enough to settle now and then, with slow steps between."""
-    dice = np.random.default_rng(5)
-    levels: list[FloatArray] = []
-    while sum(part.size for part in levels) < n:
-        levels.append(np.full(int(dice.integers(15, 90)), dice.uniform(4.5, 12.8)))
-    return np.concatenate(levels)[:n]
-
-
-def _record(plant: Plant, seed: int = 1) -> Recording:
-    n, period_s = 2400, 0.2
-    blank = np.zeros(n)
-    record = Recording("valve", np.arange(n) * period_s, _command(n), blank, np.full(n, 4.0))
-    pressure, position = simulate_recording(plant, record)
-    dice = np.random.default_rng(seed)
-    pressure = pressure + dice.normal(0.0, _NOISE_PSI, n)
-    position = position + dice.normal(0.0, _NOISE_IN, n)
-    return Recording("valve", record.time_s, record.command, position, pressure)
-
-
-def _judged(record: Recording, design: DesignModel | None = None) -> tuple[StageResult, Judgement]:
-    design = design or DesignModel()
-    case = make_case([record], design)
-    sensing = sense([record], case.noise, design.travel, design.rate_limit)
-    result = judge(case, SearchRules(most=2), DecisionRules(), lambda _what, _share: None)
-    return result, pronounce(result, sensing, 0.0, Weights())
 
 
 @pytest.mark.parametrize(
@@ -62,15 +26,15 @@ def _judged(record: Recording, design: DesignModel | None = None) -> tuple[Stage
 )
 def test_a_large_effect_is_named(effect: Effect) -> None:
     form = effect.forms[0]
-    record = _record(Plant(DesignModel(), (Inserted(effect.name, form, tuple(typical_values(form))),)))
-    _, judgement = _judged(record)
+    record = a_record(Plant(DesignModel(), (Inserted(effect.name, form, tuple(typical_values(form))),)))
+    _, judgement = judged(record)
     named = {cause.name for cause in judgement.causes}
     twins = {name for names in effect.same_as.values() for name in names}
     assert named & {effect.name, *twins}, f"{effect.name} came out as {judgement.verdict} {sorted(named)}"
 
 
 def test_nothing_is_named_where_nothing_is_wrong() -> None:
-    _, judgement = _judged(_record(Plant(DesignModel())))
+    _, judgement = judged(a_record(Plant(DesignModel())))
     assert judgement.verdict == "no_gap"
     assert judgement.causes == ()
 
@@ -85,16 +49,16 @@ def test_nothing_is_named_where_nothing_is_wrong() -> None:
     ],
 )
 def test_a_wrong_design_number_is_not_called_an_effect(number: str, design: DesignModel) -> None:
-    _, judgement = _judged(_record(Plant(design)))
+    _, judgement = judged(a_record(Plant(design)))
     assert judgement.verdict == "parameter"
     assert [cause.name for cause in judgement.causes] == [f"parameter:{number}"]
 
 
 def test_something_outside_the_vocabulary_is_unexplained() -> None:
-    record = _record(Plant(DesignModel()))
+    record = a_record(Plant(DesignModel()))
     wave = 0.02 * np.sin(2.0 * np.pi * record.time_s / 23.0)
     position = record.position + wave
-    _, judgement = _judged(Recording("wave", record.time_s, record.command, position, record.pressure))
+    _, judgement = judged(Recording("wave", record.time_s, record.command, position, record.pressure))
     assert judgement.verdict == "unexplained"
     assert judgement.causes == ()
 
@@ -102,7 +66,7 @@ def test_something_outside_the_vocabulary_is_unexplained() -> None:
 def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> None:
     effect = effects()["sensor_lag"]
     plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], tuple(typical_values(effect.forms[0]))),))
-    _, judgement = _judged(_record(plant))
+    _, judgement = judged(a_record(plant))
     weights = Weights()
     assert all(cause.probability <= weights.ceiling for cause in judgement.causes)
     assert {"sensor_lag", "additional_lag"} <= {name for names in judgement.confusable for name in names}

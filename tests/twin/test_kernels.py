@@ -56,6 +56,13 @@ def curved(x: float, _t: float) -> float:
     return x + TRAVEL * 0.02 * 4.0 * (x / TRAVEL) * (1.0 - x / TRAVEL)
 
 
+WAVE = tuple(0.01 * np.sin(0.2 * np.pi * np.arange(1, 11)))  # one period over the 59.9 s
+
+
+def waving(x: float, t: float) -> float:
+    return x + 0.01 * float(np.sin(2.0 * np.pi * t / 59.9))
+
+
 def steeper(x: float, _t: float) -> float:
     return 1.03 * x + 0.01
 
@@ -90,6 +97,7 @@ SAME = {
     "lvdt_gain": (plant_with("lvdt_calibration", "gain_and_zero", 0.03, 0.01), PlainValve(reading=steeper)),
     "lvdt_bow": (plant_with("lvdt_nonlinearity", "bow", 0.02), PlainValve(reading=curved)),
     "lvdt_drift": (plant_with("lvdt_drift", "linear", 2e-4), PlainValve(reading=lambda x, t: x + 2e-4 * t)),
+    "lvdt_wander": (plant_with("lvdt_drift", "wander", *WAVE), PlainValve(reading=waving)),
     "linkage": (plant_with("linkage_lost_motion", "play", 0.02), PlainValve(sensor_play=0.02)),
     "sensor_lag": (plant_with("sensor_lag", "first_order", 0.6), PlainValve(sensor_lag=0.6)),
 }  # fmt: skip

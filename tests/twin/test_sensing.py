@@ -40,3 +40,11 @@ def test_small_spikes_of_a_still_reading(count: int, named: bool) -> None:
 
 def test_a_healthy_reading_is_not_false() -> None:
     assert "sensor_dropouts" not in found(recorded())
+
+
+def test_one_reading_far_off_is_enough_when_it_outweighs_the_noise_of_all() -> None:
+    recording = recorded()
+    for size_in, named in ((0.3, True), (0.02, False)):
+        position = recording.position.copy()
+        position[1500] -= size_in
+        assert ("sensor_dropouts" in found(replace(recording, position=position))) is named

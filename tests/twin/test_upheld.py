@@ -59,7 +59,7 @@ def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, ve
 def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
     doubted = replace(NAMED, causes=(replace(NAMED.causes[0], probability=0.3),))
     assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN)[1].verdict == "unexplained"
-    beside = replace(doubted, causes=(*NAMED.causes, *doubted.causes))
+    beside = replace(doubted, causes=(*NAMED.causes, replace(doubted.causes[0], name="stiction")))
     assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN)[1] is beside
 
 

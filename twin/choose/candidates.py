@@ -16,9 +16,11 @@ def number_causes(channel: Channel) -> list[Cause]:
 
 def effect_causes(channel: Channel, without: Collection[str] = ()) -> list[Cause]:
     """Every effect of the channel's stages in every form that acts on the trajectory, except those in `without`."""
+    several = len(channel.trials) > 1
     return [
         Cause(effect.name, effect, form)
         for effect in effects().values()
         if effect.stage in channel.stages and effect.name not in without and effect.evidence == "trajectory"
         for form in effect.forms
+        if not (form.once and several)
     ]

@@ -29,6 +29,7 @@ class DecisionRules:
     complete: float = 0.8
     large_share: float = 0.2
     unexplained: float = 0.2
+    nothing_left: float = 1.15
     plain: float = 0.05
     plain_share: float = 0.005
     quiet: float = 2.0
@@ -36,17 +37,25 @@ class DecisionRules:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Decision:
-    """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before."""
+    """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before.
+
+    `floor`: mean squared residual of the true model.
+    """
 
     findings: Findings
     accepted: Fit
     explained: bool
     gap: bool
     rest: float
+    floor: float = 1.0
 
     @property
     def names(self) -> tuple[str, ...]:
         return self.accepted.names if self.explained else ()
+
+    def rest_of(self, fit: Fit) -> float:
+        """What `fit` leaves of the excess over the noise, as a share of the excess before."""
+        return rest_of(self.findings, fit, self.floor)
 
 
 def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Decision:
@@ -69,11 +78,17 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         size = size_of(better)
     accepted = _with_numbers(findings, _plainer_member(findings, accepted, rules), rules)
     size = size_of(accepted)
-    before = max(findings.none.mse - floor, 0.0)
-    rest = max(accepted.mse - floor, 0.0) / before if before > 0.0 else 0.0
-    explained = size > 0 and rest < rules.unexplained
+    rest = rest_of(findings, accepted, floor)
+    nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
+    explained = size > 0 and (rest < rules.unexplained or nothing_left)
     gap = explained or findings.none.mse > rules.quiet * floor
-    return Decision(findings, accepted, explained, gap, rest)
+    return Decision(findings, accepted, explained, gap, rest, floor)
+
+
+def rest_of(findings: Findings, fit: Fit, floor: float) -> float:
+    """What `fit` leaves of the excess over the noise, as a share of the excess before (0 where there is none)."""
+    before = max(findings.none.mse - floor, 0.0)
+    return max(fit.mse - floor, 0.0) / before if before > 0.0 else 0.0
 
 
 def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
@@ -83,7 +98,12 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
-    return min(near, key=lambda f: (len(f.names), -findings.score(f))) if near else fit
+    if not near:
+        return fit
+    least = min(near, key=lambda f: (len(f.names), -findings.score(f)))
+    # a further number has to be worth as much as any further cause
+    fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
+    return min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
 
 
 def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:

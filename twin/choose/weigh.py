@@ -59,15 +59,14 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
 def _comparable(decision: Decision) -> list[Fit]:
     """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed.
 
-    Where wrong numbers were accepted, an effect is a rival only if it does without moving a number as far.
+    Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far.
     """
     accepted = decision.accepted
     size = size_of(accepted)
     everything = (decision.findings.none, *decision.findings.fits)
     fits = [f for f in everything if size_of(f) <= size and f is not accepted]
     fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
-    if accepted.names and all(c.effect is None for c in accepted.space.causes):
-        fits = [f for f in fits if not _leans_on(f, accepted)]
+    fits = [f for f in fits if not _leans_on(f, accepted)]
     return [*fits, accepted]
 
 
@@ -81,12 +80,12 @@ def _adds_nothing(decision: Decision, fit: Fit, everything: Sequence[Fit]) -> bo
 
 
 def _leans_on(fit: Fit, accepted: Fit) -> bool:
-    """Whether an effect hypothesis moves an accused number at least half as far as the accusation does."""
+    """Whether an effect hypothesis moves an accused number, unaccused, at least half as far as the accusation does."""
     if all(c.effect is None for c in fit.space.causes):
         return False
     for k, name in enumerate(accepted.space.numbers):
-        if name in fit.space.numbers:
-            moved = fit.z[fit.space.numbers.index(name)]
+        if f"parameter:{name}" in accepted.names and f"parameter:{name}" not in fit.names:
+            moved = fit.z[fit.space.numbers.index(name)] if name in fit.space.numbers else 0.0
             if abs(moved) > 0.5 * abs(accepted.z[k]) and moved * accepted.z[k] > 0.0:
                 return True
     return False

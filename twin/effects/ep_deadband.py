@@ -7,6 +7,9 @@ from collections.abc import Sequence
 from twin.effect import Apply, Coefficients, Effect, Form, Parameter
 from twin.slots import EP_BAND, EP_BAND_MODE
 
+#: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
+_LOOKS = 400
+
 
 def _band(doc: str, smooth: bool) -> tuple[Parameter]:
     return (
@@ -19,6 +22,7 @@ def _band(doc: str, smooth: bool) -> tuple[Parameter]:
             scale=0.15,
             doc=doc,
             smooth=smooth,
+            looks=_LOOKS,
         ),
     )
 

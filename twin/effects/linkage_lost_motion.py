@@ -3,39 +3,45 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_PLAY
+from twin.slots import S_PLAY, S_ZERO
+
+_PLAY = Parameter(
+    name="play",
+    kind="position",
+    lower=0.0,
+    upper=0.15,
+    starts=(0.002, 0.006, 0.02),
+    scale=0.01,
+    doc="full width of the lost motion",
+)
+_ONE_SIDED = replace(
+    _PLAY,
+    lower=-0.15,
+    starts=(-0.02, -0.006, -0.002, 0.002, 0.006, 0.02),
+    doc="full width; positive where the zero was set with the core at the far side, negative at the near side",
+)
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_PLAY] = values[0]
 
 
+def _one_sided(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_PLAY] = abs(values[0])
+    c.sensor[S_ZERO] += 0.5 * values[0]
+
+
 EFFECT = Effect(
     name="linkage_lost_motion",
     stage="sensor",
     claim="There is play between the stem and the LVDT core.",
-    equations="y = max(x - play/2, min(x + play/2, y))",
+    equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side",
     source="Nordin, Gutman, Automatica 38 (2002) 1633; Tao, Kokotovic, Adaptive Control of Systems with Actuator and "
     "Sensor Nonlinearities (Wiley 1996)",
-    forms=(
-        Form(
-            "play",
-            (
-                Parameter(
-                    name="play",
-                    kind="position",
-                    lower=0.0,
-                    upper=0.15,
-                    starts=(0.002, 0.006, 0.02),
-                    scale=0.01,
-                    doc="full width of the lost motion",
-                ),
-            ),
-            _apply,
-        ),
-    ),
+    forms=(Form("play", (_PLAY,), _apply), Form("one_sided", (_ONE_SIDED,), _one_sided)),
     twins=("friction_in_motion",),
     absorbs=("deadband",),
 )

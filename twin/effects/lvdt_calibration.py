@@ -29,7 +29,7 @@ _ZERO = Parameter(
 
 def _both(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_GAIN] = 1.0 + values[0]
-    c.sensor[S_ZERO] = values[1]
+    c.sensor[S_ZERO] += values[1]
 
 
 def _gain(c: Coefficients, values: Sequence[float]) -> None:
@@ -37,7 +37,7 @@ def _gain(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _zero(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_ZERO] = values[0]
+    c.sensor[S_ZERO] += values[0]
 
 
 EFFECT = Effect(

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_DRIFT_AMP, S_DRIFT_RATE, S_DRIFT_TAU_S
+from twin.slots import KNOTS, S_DRIFT_AMP, S_DRIFT_RATE, S_DRIFT_TAU_S, S_KNOTS, S_WANDER_S
 
 _RATE = Parameter(
     name="rate",
@@ -36,6 +36,18 @@ _SETTLING = Parameter(
     neutral=200.0,
     size=False,
 )
+_ZEROS = tuple(
+    Parameter(
+        name=f"zero_{k}",
+        kind="position",
+        lower=-0.15,
+        upper=0.15,
+        starts=(0.0005 * k,),
+        scale=0.01,
+        doc=f"zero after {k}/{KNOTS} of the recording",
+    )
+    for k in range(1, KNOTS + 1)
+)
 
 
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
@@ -47,12 +59,21 @@ def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_TAU_S] = values[1]
 
 
+def _wander(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_WANDER_S] = c.duration_s / KNOTS
+    c.sensor[S_KNOTS : S_KNOTS + KNOTS] = values
+
+
 EFFECT = Effect(
     name="lvdt_drift",
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
-    equations="y = x + rate t, or y = x + change (1 - exp(-t / settling))",
+    equations="y = x + rate t, or x + change (1 - exp(-t / settling)), or x + a spline through its value at ten times",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
-    forms=(Form("linear", (_RATE,), _linear), Form("warm_up", (_CHANGE, _SETTLING), _warm_up)),
+    forms=(
+        Form("linear", (_RATE,), _linear),
+        Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
+        Form("wander", _ZEROS, _wander, once=True),
+    ),
     twins=("friction_drift", "creep"),
 )

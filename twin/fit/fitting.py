@@ -59,14 +59,19 @@ def fit(
     rounds: int = 12,
     refine: int = 1,
     weights: FloatArray | None = None,
+    anchor: tuple[FloatArray, FloatArray] | None = None,
 ) -> Fit:
-    """Fits `space` from the best `refine` of the `starts` (vectors in z). `weights` (0..1 per row) holds rows out."""
+    """Fits `space` from the best `refine` of the `starts` (vectors in z). `weights` (0..1 per row) holds rows out.
+
+    `anchor`: where the unknowns are believed to be (z) and how surely (standard deviations in z), besides their prior.
+    """
     spreads = space.spreads
     root = None if weights is None else np.sqrt(weights)
 
     def residuals(z: FloatArray) -> FloatArray:
         r = channel.residuals(space.plant(z))
-        return np.concatenate([r if root is None else r * root, z / spreads])
+        held = [] if anchor is None else [(z - anchor[0]) / anchor[1]]
+        return np.concatenate([r if root is None else r * root, z / spreads, *held])
 
     ranked = _rank(residuals, starts, refine) if len(starts) > refine else list(starts)
     rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)

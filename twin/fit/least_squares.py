@@ -96,7 +96,7 @@ def descend(
     z = np.clip(start, lower, upper)
     r = residuals(z)
     cost = float(r @ r)
-    for size in (0.12, 0.05, 0.02, 0.008):
+    for size in (0.12, 0.05, 0.02, 0.008, 0.003, 0.001):
         for k in which:
             for sign in (1.0, -1.0):
                 trial = z.copy()

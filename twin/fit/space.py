@@ -159,7 +159,7 @@ def _dense(p: Parameter) -> list[float]:
     low, high = min(p.starts), max(p.starts)
     if not p.size or low <= 0.0:
         return list(p.starts)
-    return [float(v) for v in np.geomspace(0.7 * low, min(1.5 * high, p.upper), 28)]
+    return [float(v) for v in np.geomspace(0.7 * low, min(1.5 * high, p.upper), p.looks)]
 
 
 def _spread(p: Parameter) -> float:

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from scipy.interpolate import CubicSpline
 
 from logs.recording import FloatArray
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import plain_play
 from twin.slots import (
+    KNOTS,
     S_BOW,
     S_DRIFT_AMP,
     S_DRIFT_RATE,
@@ -19,11 +21,13 @@ from twin.slots import (
     S_GAIN,
     S_HOLD_PHASE_S,
     S_HOLD_S,
+    S_KNOTS,
     S_LAG_S,
     S_PLAY,
     S_STEP,
     S_SWING,
     S_TRAVEL,
+    S_WANDER_S,
     S_ZERO,
 )
 
@@ -57,7 +61,16 @@ def _curve(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
         y = y + c[S_DRIFT_RATE] * t
     if c[S_DRIFT_AMP] != 0.0:
         y = y - c[S_DRIFT_AMP] * np.expm1(-t / c[S_DRIFT_TAU_S])
+    if c[S_WANDER_S] > 0.0:
+        y = y + _wandering(t, c)
     return y
+
+
+def _wandering(t: FloatArray, c: FloatArray) -> FloatArray:
+    """The zero that goes smoothly through its knots, from 0 at the start; after the last knot it stays."""
+    knots = np.concatenate([[0.0], c[S_KNOTS : S_KNOTS + KNOTS]])
+    zero = CubicSpline(c[S_WANDER_S] * np.arange(KNOTS + 1.0), knots, bc_type="natural")
+    return np.asarray(zero(np.minimum(t, KNOTS * c[S_WANDER_S])))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -116,8 +116,8 @@ def _coverage(
         return Proposal(NextExperiment(f"{start}No experiment of the library would show {names} of a clear size."))
     experiment = rounded(found.experiment)
     why = (
-        f"{start}It would show {', '.join(_plain(n) for n in found.shown)}, which these records could not, in "
-        f"{duration_words(experiment.duration_s)}."
+        f"{start}The next experiment would show {', '.join(_plain(n) for n in found.shown)}, which these records could "
+        f"not, in {duration_words(experiment.duration_s)}."
     )
     return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
 

@@ -60,6 +60,7 @@ def test_equals_the_simulation_with_everything_at_once() -> None:
         ("additional_lag", "after_play"),
         ("creep", "two_tails"),
         ("lvdt_drift", "warm_up"),
+        ("lvdt_drift", "wander"),
         ("sensor_lag", "first_order"),
         ("stale_samples", effects()["stale_samples"].forms[0].name),
     ]

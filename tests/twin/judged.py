@@ -1,0 +1,47 @@
+"""Records of a plant with noise, searched and judged without held-out data."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from twin.case import make_case
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
+from twin.plant import Plant
+from twin.sensing import sense
+from twin.simulate import simulate_recording
+from twin.stages import StageResult, judge
+from twin.verdict import Judgement, pronounce
+
+_NOISE_IN, _NOISE_PSI = 0.0004, 0.008
+
+
+def _command(n: int) -> FloatArray:
+    """Random steps over both curves, held long enough to settle now and then, with slow steps between."""
+    dice = np.random.default_rng(5)
+    levels: list[FloatArray] = []
+    while sum(part.size for part in levels) < n:
+        levels.append(np.full(int(dice.integers(15, 90)), dice.uniform(4.5, 12.8)))
+    return np.concatenate(levels)[:n]
+
+
+def a_record(plant: Plant, seed: int = 1) -> Recording:
+    n, period_s = 2400, 0.2
+    blank = np.zeros(n)
+    record = Recording("valve", np.arange(n) * period_s, _command(n), blank, np.full(n, 4.0))
+    pressure, position = simulate_recording(plant, record)
+    dice = np.random.default_rng(seed)
+    pressure = pressure + dice.normal(0.0, _NOISE_PSI, n)
+    position = position + dice.normal(0.0, _NOISE_IN, n)
+    return Recording("valve", record.time_s, record.command, position, pressure)
+
+
+def judged(record: Recording, design: DesignModel | None = None) -> tuple[StageResult, Judgement]:
+    design = design or DesignModel()
+    case = make_case([record], design)
+    sensing = sense([record], case.noise, design.travel, design.rate_limit)
+    result = judge(case, SearchRules(most=2), DecisionRules(), lambda _what, _share: None)
+    return result, pronounce(result, sensing, 0.0, Weights())

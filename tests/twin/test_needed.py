@@ -1,0 +1,99 @@
+"""Numbers on which an effect leans, causes that are less likely than not, and causes that unseen data do not need."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from twin.catalog import effect
+from twin.choose.candidates import effect_causes
+from twin.choose.decide import Decision, DecisionRules, plainer
+from twin.choose.trim import dropped, trimmed
+from twin.choose.weigh import Weights
+from twin.diagnosis import Cause as Named
+from twin.gap import GapParts, idle_cause
+from twin.plant import Inserted, Plant
+from twin.stages import StageResult
+from twin.verdict import Judgement
+
+
+def with_lag(design: DesignModel, lag_s: float = 0.3) -> Plant:
+    return Plant(design, (Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (lag_s,)),))
+
+
+@pytest.mark.parametrize(("slip", "accused"), [(0.015, True), (0.0, False)])
+def test_a_number_that_slipped_a_little_and_matters_much_is_accused(slip: float, accused: bool) -> None:
+    design = DesignModel(compliance=0.19 * (1.0 + slip))
+    result, judgement = judged(a_record(with_lag(design, 0.1)))
+    assert ("parameter:compliance" in {c.name for c in judgement.causes}) is accused
+    assert len(judgement.causes) == 1 + accused
+    compliance = result.plant().design.compliance
+    assert compliance == pytest.approx(design.compliance, rel=1e-3)
+
+
+@pytest.fixture(scope="module")
+def position() -> tuple[StageResult, Decision]:
+    """A valve with a lag and with the wrong rate limit, and what its position says."""
+    result, _ = judged(a_record(with_lag(DesignModel(rate_limit=0.1))))
+    decision = result.decisions[-1]
+    assert len(decision.names) == 2
+    return result, decision
+
+
+def test_a_sure_cause_is_kept_and_one_with_many_rivals_is_left_out(position: tuple[StageResult, Decision]) -> None:
+    _, decision = position
+    rules, weights = DecisionRules(), Weights()
+    assert trimmed(decision, rules, weights) is decision
+    # with a temperature at which every pair is as likely as any other, neither is known
+    unsure, lenient = Weights(temperature=1e9), replace(rules, unexplained=1.1)
+    assert len(trimmed(decision, lenient, unsure).names) == 1
+    assert (
+        trimmed(decision, replace(rules, unexplained=0.0, nothing_left=0.0), unsure) is decision
+    )  # nothing else explains it
+
+
+def test_dropping_the_only_cause_leaves_the_design(position: tuple[StageResult, Decision]) -> None:
+    _, decision = position
+    one = dropped(decision, decision.names[0])
+    assert one is not None and one.names == decision.names[1:]
+    none = dropped(one, one.names[0])
+    assert none is not None and none.names == () and not none.gap and none.rest == pytest.approx(1.0)
+
+
+def errors(level: float) -> np.ndarray:
+    return np.full(8, level)
+
+
+def test_a_cause_behind_the_pressure_that_unseen_data_do_not_need(position: tuple[StageResult, Decision]) -> None:
+    result, decision = position
+    first, second = decision.names
+    causes = tuple(Named(name, "sensor", 0.9, None, {}) for name in decision.names)
+    judgement = Judgement("effects", causes, (), ())
+    for without, idle in (({first: 1.5, second: 1.01}, second), ({first: 1.5, second: 1.5}, None)):
+        parts = GapParts(errors(3.0), errors(2.0), errors(0.01), without, {})
+        assert idle_cause(parts, judgement, result, 1.0) == idle
+    alone = replace(judgement, causes=causes[1:])
+    parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {second: 0.9}, {})
+    assert idle_cause(parts, alone, result, 1.0) is None
+
+
+def test_a_number_that_adds_less_than_any_further_cause_would_have_to_is_left_out() -> None:
+    result, _ = judged(a_record(Plant(DesignModel(rate_limit=0.1))))
+    findings, rules = result.decisions[-1].findings, DecisionRules()
+    alone = [f for f in findings.fits if f.names and all(n.startswith("parameter:") for n in f.names)]
+    two = next(f for f in alone if set(f.names) == {"parameter:rate_limit", "parameter:tau"})
+    close = replace(two, mse=two.mse - 0.5 * rules.gain)
+    found = plainer(replace(findings, fits=(*findings.fits, close)), close, rules)
+    assert found.names == ("parameter:rate_limit",)
+
+
+def test_what_happens_once_is_no_candidate_for_several_recordings(position: tuple[StageResult, Decision]) -> None:
+    channel = position[1].findings.channel
+    several = replace(channel, trials=(*channel.trials, *channel.trials))
+    for looked_at, there in ((channel, True), (several, False)):
+        forms = {c.form.name for c in effect_causes(looked_at) if c.name == "lvdt_drift" and c.form is not None}
+        assert ("wander" in forms) is there and "linear" in forms

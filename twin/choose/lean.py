@@ -1,0 +1,75 @@
+"""Accuses the design number on whose re-tuning accepted effects lean.
+
+The design numbers follow within their priors, so that an effect is not blamed for a small slip of a number. But when
+the effects leave a good part of the gap with all numbers as the design has them, then it is a number that explains this
+part, however little it had to move, and to name the effects only would be half of the answer.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from twin.choose.claims import same_claim
+from twin.choose.decide import Decision
+from twin.effect import Scales
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Cause, make_space
+
+#: Share of the gap that the effects leave without the numbers; and at least so many times the noise variance.
+_SHARE, _LEAST = 0.25, 0.5
+#: Mean squared residual, of the true model's, up to which the effects' forms are right enough to judge numbers beside.
+_RIGHT = 1.5
+_ROUNDS = 8
+
+
+def leaning(decision: Decision, scales: Scales) -> Decision:
+    """The decision with the number accused that its effects cannot do without."""
+    accepted = decision.accepted
+    if not decision.explained or all(c.effect is None for c in accepted.space.causes):
+        return decision
+    if accepted.mse > _RIGHT * decision.floor:
+        return decision
+    needed = _Leaning(decision, scales).needed()
+    if needed is None:
+        return decision
+    causes = (*accepted.space.causes, needed)
+    accused = _fitted(decision, causes, accepted.space.numbers, scales)
+    findings = replace(decision.findings, fits=(*decision.findings.fits, accused))
+    return replace(decision, findings=findings, accepted=accused, rest=decision.rest_of(accused))
+
+
+@dataclass(frozen=True, slots=True)
+class _Leaning:
+    decision: Decision
+    scales: Scales
+
+    def needed(self) -> Cause | None:
+        """The number that makes up for all the others, as designed; None where none is needed, or more than one."""
+        accepted = self.decision.accepted
+        spare = [Cause(f"parameter:{n}") for n in accepted.space.numbers if f"parameter:{n}" not in accepted.names]
+        spare = [c for c in spare if not same_claim(accepted, c)]
+        if not spare or not self._left(self._with([])):
+            return None
+        best = min(spare, key=lambda c: self._with([c]).mse)
+        return None if self._left(self._with([best])) else best
+
+    def _with(self, more: Sequence[Cause]) -> Fit:
+        """The accepted causes and these numbers, with every other number as designed."""
+        causes = (*self.decision.accepted.space.causes, *more)
+        numbers = tuple(c.name.removeprefix("parameter:") for c in causes if c.effect is None)
+        absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
+        kept = [n for n in self.decision.accepted.space.numbers if n in numbers or n in absorbed]
+        return _fitted(self.decision, causes, kept, self.scales)
+
+    def _left(self, one: Fit) -> bool:
+        """Whether much of the gap is left."""
+        decision = self.decision
+        gap = decision.findings.none.mse - decision.floor
+        return one.mse - decision.accepted.mse > max(_SHARE * gap, _LEAST)
+
+
+def _fitted(decision: Decision, causes: Sequence[Cause], numbers: Sequence[str], scales: Scales) -> Fit:
+    accepted = decision.accepted
+    space = make_space(accepted.space.base, causes, numbers, scales)
+    return fit(decision.findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS)

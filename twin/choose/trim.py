@@ -1,0 +1,58 @@
+"""Leaves out causes that are less likely than not, where the others explain the gap without them.
+
+Something beside the sure causes may be real and its name a guess: several further causes then do almost as well, and
+none of them reaches an even chance. Naming one would be wrong more often than right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from twin.catalog import effects
+from twin.choose.decide import Decision, DecisionRules
+from twin.choose.weigh import Weights, weigh
+from twin.fit.fitting import Fit
+
+#: A cause that is, with its twins, less likely than this is not named.
+LIKELY = 0.45
+
+
+def belief(name: str, probability: Mapping[str, float]) -> float:
+    """The probability of a cause or one of its twins, which no record of these signals could tell from it."""
+    one = effects().get(name)
+    twins = {twin for names in one.same_as.values() for twin in names} if one is not None else set()
+    return sum(probability.get(other, 0.0) for other in {name, *twins})
+
+
+def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
+    """The decision without its unlikely causes; as it was where the rest would leave the gap unexplained."""
+    while decision.explained and len(decision.names) > 1:
+        probability = weigh(decision, weights).probability
+        weakest = min(decision.names, key=lambda name: belief(name, probability))
+        if belief(weakest, probability) >= LIKELY:
+            break
+        smaller = _without(decision, weakest)
+        if smaller is None:
+            break
+        rest = decision.rest_of(smaller)
+        if rest >= rules.unexplained and smaller.mse >= rules.nothing_left * decision.floor:
+            break
+        decision = replace(decision, accepted=smaller, rest=rest)
+    return decision
+
+
+def dropped(decision: Decision, name: str) -> Decision | None:
+    """The decision without one of its causes, whatever that leaves; None where the others were never tried alone."""
+    if decision.names == (name,):
+        none = decision.findings.none
+        return replace(decision, accepted=none, explained=False, gap=False, rest=decision.rest_of(none))
+    smaller = _without(decision, name)
+    return None if smaller is None else replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
+
+
+def _without(decision: Decision, name: str) -> Fit | None:
+    """The best hypothesis with the other causes of the accepted one."""
+    kept = sorted(set(decision.names) - {name})
+    fits = [f for f in decision.findings.fits if sorted(f.names) == kept]
+    return max(fits, key=decision.findings.score, default=None)
