@@ -34,6 +34,7 @@ from twin.rounding import rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
 from twin.statement import statement
+from twin.swing import swing_note, swing_of_position
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
@@ -113,8 +114,10 @@ def diagnose(
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
         ep_share = where.stage["ep"].value if where.stage else 0.0
-        loud = disturbance(case, settings.margin.position)
-        hearing = Hearing(look, retuned, sensing, ep_share, settings.weights, loud)
+        loud, swing = disturbance(case, settings.margin.position), swing_of_position(everything)
+        notes += [swing_note(swing, case.scales.position_unit)] if swing else []
+        disturbed = loud is not None or swing is not None
+        hearing = Hearing(look, retuned, sensing, ep_share, settings.weights, disturbed)
         judgement = hearing.judgement(result)
         progress("held-out gap", 0.0)
         needed, judgement, parts = hearing.held_out(result, judgement, stage.told(progress))
@@ -133,7 +136,7 @@ def diagnose(
     model, units = _model(Plant(final.design, tuple(i for i in final.inserted if i not in late)), case)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
     if judgement.verdict == "unexplained":
-        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, loud))
+        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, loud, swing))
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
 
 

@@ -10,7 +10,6 @@ from twin.choose.trim import dropped
 from twin.choose.weigh import Weights
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, heldout_parts, idle_cause
-from twin.repeatable import Disturbance
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement, pronounce
@@ -27,11 +26,11 @@ class Hearing:
     sensing: Sensing
     ep_share: float
     weights: Weights
-    loud: Disturbance | None
+    disturbed: bool
 
     def judgement(self, result: StageResult) -> Judgement:
         """The verdict on a result."""
-        return pronounce(result, self.sensing, self.ep_share, self.weights, self.loud)
+        return pronounce(result, self.sensing, self.ep_share, self.weights, self.disturbed)
 
     def held_out(
         self, result: StageResult, judgement: Judgement, progress: Progress

@@ -5,6 +5,8 @@ Source: correlation ratio, Pearson (1905); Welch, IEEE Trans. AU-15 (1967) 70 (s
 
 from __future__ import annotations
 
+from dataclasses import asdict
+
 import numpy as np
 import numpy.typing as npt
 from scipy.signal import welch
@@ -15,12 +17,15 @@ from twin.choose.decide import Decision
 from twin.fit.trial import Trial
 from twin.repeatable import Disturbance, repeated_share
 from twin.stages import StageResult
+from twin.swing import Swing
 from twin.where.regime import DIRECTIONS, REGIMES, classify
 
 _BINS = 10
 
 
-def residual_signature(case: Case, result: StageResult, loud: Disturbance | None) -> dict[str, object]:
+def residual_signature(
+    case: Case, result: StageResult, loud: Disturbance | None, swing: Swing | None = None
+) -> dict[str, object]:
     """What the best hypothesis leaves on the channel with the largest rest; names, shares and numbers for JSON.
 
     `depends_on`: share of the residual's square that the means within bins of each thing account for (0 to 1).
@@ -41,6 +46,9 @@ def residual_signature(case: Case, result: StageResult, loud: Disturbance | None
             "at_rest": loud.resting,
             "unit": loud.unit,
         }
+    if swing is not None:
+        unit = case.scales.position_unit
+        found["swings"] = {**asdict(swing), "unit": unit}
     return found
 
 

@@ -12,7 +12,7 @@ from twin.diagnosis import Cause, Estimate, Ranked, Verdict
 from twin.fit.fitting import Fit
 from twin.fit.numbers import unit
 from twin.fit.space import Cause as Candidate
-from twin.repeatable import Disturbance, repeated_share
+from twin.repeatable import repeated_share
 from twin.sensing import Sensing
 from twin.stages import StageResult
 
@@ -38,11 +38,11 @@ class Judgement:
 
 
 def pronounce(
-    result: StageResult, sensing: Sensing, ep_share: float, weights: Weights, loud: Disturbance | None = None
+    result: StageResult, sensing: Sensing, ep_share: float, weights: Weights, disturbed: bool = False
 ) -> Judgement:
     """Combines everything. `ep_share` is the converter's share of the reducible position error, 0 if unknown.
 
-    `loud`: what does not repeat although it should; without any cause it is what is unexplained.
+    `disturbed`: something does not repeat although it should, or swings by itself; without any cause it is unexplained.
     """
     weighed = [weigh(d, weights) for d in result.decisions]
     causes = _causes(result, weighed, sensing)
@@ -52,7 +52,7 @@ def pronounce(
         return Judgement("unexplained", (), ranking, ())
     effects = [c for c in causes if not c.name.startswith("parameter:")]
     if not causes:
-        return Judgement("no_gap" if loud is None else "unexplained", (), ranking, ())
+        return Judgement("unexplained" if disturbed else "no_gap", (), ranking, ())
     verdict: Verdict = "parameter" if not effects else "effect" if len(effects) == 1 else "effects"
     return Judgement(verdict, causes, ranking, sets)
 

@@ -1,0 +1,50 @@
+"""Interference on a reading hides in its own noise; it is found as one line, and random noise is not."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin.diagnose import diagnose
+from twin.plant import Plant
+from twin.swing import swing_of
+
+
+@pytest.mark.parametrize(("frequency_hz", "amplitude"), [(1.37, 0.003), (4.21, 0.002)])
+def test_a_swing_is_found_with_its_frequency_and_amplitude(frequency_hz: float, amplitude: float) -> None:
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    noise = np.random.default_rng(3).normal(0.0, SIGMA, trial.recording.n)
+    error = noise + amplitude * np.sin(2.0 * np.pi * frequency_hz * trial.recording.time_s + 0.7)
+    swing = swing_of(error, (trial,))
+    assert swing is not None
+    assert swing.frequency_hz == pytest.approx(frequency_hz, abs=2e-4)
+    assert swing.amplitude == pytest.approx(amplitude, rel=0.03)
+    assert swing.share == pytest.approx(0.5 * amplitude**2 / (0.5 * amplitude**2 + SIGMA**2), abs=0.02)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.9, 0.995])
+def test_noise_with_or_without_a_memory_does_not_swing(memory: float) -> None:
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    dice = np.random.default_rng(4).normal(0.0, SIGMA, trial.recording.n)
+    error = np.empty_like(dice)
+    error[0] = dice[0]
+    for k in range(1, dice.size):
+        error[k] = memory * error[k - 1] + dice[k]
+    assert swing_of(error, (trial,)) is None
+    assert swing_of(error[:100], (replace(trial, recording=trial.recording.slice(0, 100)),)) is None
+
+
+def test_a_healthy_valve_with_interference_is_unexplained_and_the_operator_told_where_to_look() -> None:
+    recording = trial_of(Plant(DESIGN), staircase())[0].recording
+    hum = 0.003 * np.sin(2.0 * np.pi * 1.37 * recording.time_s)
+    outcome = diagnose([replace(recording, position=recording.position + hum)], DESIGN)
+    assert outcome.diagnosis.verdict == "unexplained"
+    signature = outcome.diagnosis.residual_signature
+    assert signature is not None
+    swings = signature["swings"]
+    assert isinstance(swings, dict) and swings["frequency_hz"] == pytest.approx(1.37, abs=1e-3)
+    assert any("swings by itself" in note.what for note in outcome.diagnosis.data_quality)
+    assert diagnose([recording], DESIGN).diagnosis.verdict == "no_gap"

@@ -1,0 +1,79 @@
+"""A reading that swings by itself: noise that is mostly one line of the spectrum.
+
+The noise of a reading is measured where nothing happens, so a swing of constant amplitude (interference on the cable, a
+beat with the mains) hides in it: the design then misses by no more than the noise, and yet noise it is not.
+Source: Fisher, Proc. R. Soc. A 125 (1929) 54 (the largest line of a periodogram).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from logs.recording import DataNote, FloatArray
+from twin.fit.trial import Trial
+from twin.stages import StageResult
+
+#: Of the squared error of the design, for white noise the chance of this in one line is nil.
+_SHARE = 0.8
+#: Fewer swings than this in the record are a drift, or a model's error.
+_SWINGS = 20.0
+_LEAST_ROWS = 200
+
+
+@dataclass(frozen=True, slots=True)
+class Swing:
+    """`share` of the squared error is one sine of `frequency_hz` (as sampled: it may be folded) and `amplitude`."""
+
+    frequency_hz: float
+    amplitude: float
+    share: float
+
+
+def swing_of_position(result: StageResult) -> Swing | None:
+    """The swing of the design's error of the position [position], in what was measured of it."""
+    decision = next(d for d in result.decisions if d.findings.channel.name != "pressure")
+    channel = decision.findings.channel
+    return swing_of(decision.findings.none.residuals * channel.sigma, channel.trials)
+
+
+def swing_note(swing: Swing, unit: str) -> DataNote:
+    """What an operator should look at."""
+    return DataNote(
+        f"the position swings by itself, {swing.amplitude:.2g} {unit} at {swing.frequency_hz:.3g} Hz as sampled: "
+        f"{100.0 * swing.share:.0f} % of what the design misses",
+        "taken for noise, or for unexplained where nothing else is; look at cable, screen and supply of the sensor",
+        0,
+    )
+
+
+def swing_of(error: FloatArray, trials: tuple[Trial, ...]) -> Swing | None:
+    """The swing that makes up most of the longest trial's `error`, or None.
+
+    `error`: shape (sum of rows,), 0 where a row does not count.
+    """
+    at = np.cumsum([0, *(t.recording.n for t in trials)])
+    k = int(np.argmax(np.diff(at)))
+    r, time_s = error[at[k] : at[k + 1]], trials[k].recording.time_s - trials[k].recording.time_s[0]
+    use = r != 0.0
+    if np.count_nonzero(use) < _LEAST_ROWS:
+        return None
+    size = 4 * r.size
+    power = np.abs(np.fft.rfft(r - r[use].mean() * use, size))
+    frequency = np.fft.rfftfreq(size, trials[k].recording.period_s)
+    power[frequency < _SWINGS / time_s[-1]] = 0.0
+    near = frequency[int(np.argmax(power))] + np.linspace(-0.5, 0.5, 41) / time_s[-1]
+    best = max((_fitted(r[use], time_s[use], f) for f in near), key=lambda s: s.share)
+    return best if best.share >= _SHARE else None
+
+
+def _fitted(r: FloatArray, time_s: FloatArray, frequency_hz: float) -> Swing:
+    """The sine of one frequency, by least squares."""
+    phase = 2.0 * np.pi * frequency_hz * time_s
+    basis = np.column_stack([np.cos(phase), np.sin(phase), np.ones_like(phase)])
+    best, *_ = np.linalg.lstsq(basis, r, rcond=None)
+    rest = r - basis @ best
+    whole = r - r.mean()
+    share = 1.0 - float(rest @ rest) / max(float(whole @ whole), 1e-300)
+    return Swing(float(frequency_hz), float(np.hypot(best[0], best[1])), share)
