@@ -88,5 +88,13 @@ def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> 
 def _judge(
     case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress, floor: float = 1.0
 ) -> Decision:
-    findings = Searcher(channel, case.base, case.scales, search, progress).run()
+    findings = Searcher(channel, case.base, case.scales, search, progress, _resting(case, channel)).run()
     return leaning(decide(findings, rules, floor), case.scales)
+
+
+def _resting(case: Case, channel: Channel) -> float:
+    """Mean squared error of the channel's reading at rest, noise variance = 1; 1 where that is not known."""
+    noise = case.noise.pressure if channel.name == "pressure" else case.noise.position
+    known = noise.by_source if noise is not None else {}
+    resting = known.get("still", known.get("straight", channel.sigma))
+    return float(min(1.0, (resting / channel.sigma) ** 2))

@@ -28,10 +28,12 @@ def _command(n: int) -> FloatArray:
     return np.concatenate(levels)[:n]
 
 
-def a_record(plant: Plant, seed: int = 1) -> Recording:
+def a_record(plant: Plant, seed: int = 1, twice: bool = False) -> Recording:
+    """Eight minutes of noisy readings; `twice`: the second half has the commands of the first."""
     n, period_s = 2400, 0.2
     blank = np.zeros(n)
-    record = Recording("valve", np.arange(n) * period_s, _command(n), blank, np.full(n, 4.0))
+    command = np.tile(_command(n // 2), 2) if twice else _command(n)
+    record = Recording("valve", np.arange(n) * period_s, command, blank, np.full(n, 4.0))
     pressure, position = simulate_recording(plant, record)
     dice = np.random.default_rng(seed)
     pressure = pressure + dice.normal(0.0, _NOISE_PSI, n)

@@ -97,3 +97,12 @@ def test_what_happens_once_is_no_candidate_for_several_recordings(position: tupl
     for looked_at, there in ((channel, True), (several, False)):
         forms = {c.form.name for c in effect_causes(looked_at) if c.name == "lvdt_drift" and c.form is not None}
         assert ("wander" in forms) is there and "linear" in forms
+
+
+@pytest.mark.parametrize("rate", [0.0, 5e-5])
+def test_what_drifts_between_repeats_is_found_beside_a_cause_that_does_not(rate: float) -> None:
+    play = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.008,))
+    wear = Inserted("friction_drift", effect("friction_drift").form("linear"), (rate,))
+    record = a_record(Plant(DesignModel(), (play, wear) if rate else (play,)), twice=True)
+    _, judgement = judged(record)
+    assert {c.name for c in judgement.causes} == {"linkage_lost_motion"} | ({"friction_drift"} if rate else set())

@@ -40,6 +40,9 @@ class SearchRules:
     forms: int = 3  # each in so many forms at the most
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
+    restless: float = (
+        0.5  # resting reading's share of the noise, below which something may have drifted between repeats
+    )
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
 
 
@@ -82,6 +85,9 @@ class Searcher:
     scales: Scales
     rules: SearchRules = field(default_factory=SearchRules)
     progress: Progress = lambda _what, _share: None
+    resting: float = (
+        1.0  # mean squared error of a reading at rest: below 1 where the noise was measured between repeats
+    )
     origins: list[Fit] = field(default_factory=list)  # hypotheses without a cause, from where pairs are looked for
     tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
 
@@ -96,6 +102,7 @@ class Searcher:
         for size in range(2, self.rules.most + 1):
             best = min(level, key=lambda f: f.mse, default=none)
             if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
+                found += self._drifting(level) if size == 2 else []
                 break
             # Of three causes that explain all, the best two explain two thirds, or more.
             if size > 2 and best.mse - 1.0 > self.rules.hopeless * (retuned.mse - 1.0):
@@ -132,6 +139,15 @@ class Searcher:
         if size == 2:
             fits += self._paired([c for c in singles if c.form is not None])
         return self._polished(best_forms(fits, self.channel.rows))
+
+    def _drifting(self, level: Sequence[Fit]) -> list[Fit]:
+        """What drifts beside the likeliest cause, where it may hide in the noise: more is not to be found there."""
+        if self.resting > self.rules.restless:
+            return []
+        causes = [c for c in effect_causes(self.channel) if c.effect is not None and c.effect.drifts]
+        likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
+        pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
+        return best_forms(self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts"), self.channel.rows)
 
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
         """What stands beside the likeliest hypotheses and was not fitted on the way up.

@@ -89,6 +89,7 @@ EFFECT = Effect(
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
     ),
+    drifts=True,
     twins=("lvdt_drift",),
     absorbs=("deadband",),
 )

@@ -75,5 +75,6 @@ EFFECT = Effect(
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("wander", _ZEROS, _wander, once=True),
     ),
+    drifts=True,
     twins=("friction_drift", "creep"),
 )
