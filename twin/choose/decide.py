@@ -72,6 +72,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         better = next((f for f in bigger if f is not None and _worth(findings, accepted, f, rules, floor)), None)
         if better is not None and accepted is findings.none:
             better = plainer(findings, better, rules)
+            better = better if _worth(findings, accepted, better, rules, floor) else None
         if better is None:
             break
         accepted = better
