@@ -70,16 +70,16 @@ def _limit(
     rules: DecisionRules,
 ) -> float:
     """Smallest size in record units; infinite where the response is nil."""
-    main = _main(form)
-    if main is None:
+    main, held = _main(form), next((one for one in base.inserted if one.effect == effect.name), None)
+    if main is None or (held is not None and held.form.name != form.name):
         return float("inf")
     sizes = sorted(
         form.parameters[0].starts if main is form.parameters[0] else main.starts, key=lambda s: abs(s - main.neutral)
     )
     plain = channel.residuals(base)
     for size in sizes:
-        values = tuple((size if p is main else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
-        changed = channel.residuals(Plant(base.design, (*base.inserted, Inserted(effect.name, form, values))))
+        values = _sized(form, main, size, held, scales)
+        changed = channel.residuals(base.having([Inserted(effect.name, form, values)]))
         change = changed - plain
         change -= nuisance @ (nuisance.T @ change)
         power = float(change @ change)
@@ -87,6 +87,14 @@ def _limit(
         if power > 1e-6 * needed:
             return abs(size - main.neutral) * scales.factor(main.kind) * float(np.sqrt(needed / power))
     return float("inf")
+
+
+def _sized(form: Form, main: Parameter, size: float, held: Inserted | None, scales: Scales) -> tuple[float, ...]:
+    """Values of the form at `size` of its main parameter; a form that the design has changes by as much."""
+    if held is None:
+        return tuple((size if p is main else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
+    change = (size - main.neutral) * scales.factor(main.kind)
+    return tuple(v + change if p is main else v for p, v in zip(form.parameters, held.values, strict=True))
 
 
 def _main(form: Form) -> Parameter | None:

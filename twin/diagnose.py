@@ -147,7 +147,7 @@ def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned:
     if judgement.verdict == "unexplained":
         return retuned.plant
     found = result.plant() if {c.name for c in judgement.causes} - set(sensing.accepted) else case.base
-    return Plant(found.design, (*found.inserted, *sensing.inserted()))
+    return found.having(sensing.inserted())
 
 
 def _assembled(

@@ -67,6 +67,11 @@ class Plant:
             one.form.apply(c, one.values)
         return c
 
+    def having(self, inserted: Sequence[Inserted]) -> Plant:
+        """This plant with `inserted` besides, each in the place of an effect of the same name that it already has."""
+        names = {one.effect for one in inserted}
+        return Plant(self.design, (*(one for one in self.inserted if one.effect not in names), *inserted))
+
     def __str__(self) -> str:
         d = self.design
         words = [

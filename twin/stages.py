@@ -45,12 +45,12 @@ class StageResult:
 def combined(base: Plant, fits: Sequence[Fit]) -> Plant:
     """One plant out of fits on different channels: each brings its design numbers and its effects."""
     design = base.design
-    inserted = list(base.inserted)
+    found = Plant(design, base.inserted)
     for one in fits:
         plant = one.plant
         design = retuned(design, {n: nominal(plant.design, n) for n in one.space.numbers})
-        inserted += plant.inserted[len(base.inserted) :]
-    return Plant(design, tuple(inserted))
+        found = found.having([i for i in plant.inserted if i not in base.inserted])
+    return Plant(design, found.inserted)
 
 
 def judge(case: Case, search: SearchRules, rules: DecisionRules, progress: Progress) -> StageResult:

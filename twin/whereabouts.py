@@ -60,10 +60,10 @@ def _up_to(case: Case, fits: list[Fit], last: str | None) -> Plant:
     kept = _STAGES[: _STAGES.index(last) + 1]
     whole = combined(case.base, fits)
     stage_of = {c.name: c.stage for f in fits for c in f.space.causes}
-    inserted = [i for i in whole.inserted if stage_of.get(i.effect, "ep") in kept]
+    inserted = [i for i in whole.inserted if i.effect in stage_of and stage_of[i.effect] in kept]
     numbers = {n for f in fits for n in f.space.numbers}
     design = whole.design if "actuator" in kept else _with_ep_only(case, whole, "ep_tau" in numbers)
-    return Plant(design, tuple(inserted))
+    return Plant(design, case.base.inserted).having(inserted)
 
 
 def _with_ep_only(case: Case, whole: Plant, retuned_ep: bool) -> DesignModel:

@@ -10,6 +10,7 @@ from twin.case import make_case
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
+from twin.insert import inserted_from
 from twin.plant import Plant
 from twin.sensing import sense
 from twin.simulate import simulate_recording
@@ -43,7 +44,7 @@ def a_record(plant: Plant, seed: int = 1, twice: bool = False) -> Recording:
 
 def judged(record: Recording, design: DesignModel | None = None) -> tuple[StageResult, Judgement]:
     design = design or DesignModel()
-    case = make_case([record], design)
+    case = make_case([record], design, inserted_from(design))
     sensing = sense([record], case.noise, design.travel, design.rate_limit)
     result = judge(case, SearchRules(most=2), DecisionRules(), lambda _what, _share: None)
     return result, pronounce(result, sensing, 0.0, Weights())

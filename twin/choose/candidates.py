@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-
 from twin.catalog import effects
+from twin.effect import Effect, Form
 from twin.fit.channel import Channel
 from twin.fit.space import Cause
+from twin.plant import Plant
 
 
 def number_causes(channel: Channel) -> list[Cause]:
@@ -14,13 +14,27 @@ def number_causes(channel: Channel) -> list[Cause]:
     return [Cause(f"parameter:{name}") for name in channel.numbers]
 
 
-def effect_causes(channel: Channel, without: Collection[str] = ()) -> list[Cause]:
-    """Every effect of the channel's stages in every form that acts on the trajectory, except those in `without`."""
+def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
+    """Every effect of the channel's stages in every form that acts on the trajectory.
+
+    An effect of the `base` plant stands trial only if the design's file brought it, and in the file's form: it may have
+    changed. What was inserted for the record's sake (a late sample, a reading that rounds down) is settled.
+    """
     several = len(channel.trials) > 1
     return [
-        Cause(effect.name, effect, form)
+        Cause(effect.name, effect, form, held)
         for effect in effects().values()
-        if effect.stage in channel.stages and effect.name not in without and effect.evidence == "trajectory"
-        for form in effect.forms
+        if effect.stage in channel.stages and effect.evidence == "trajectory"
+        for form, held in _forms(effect, base)
         if not (form.once and several)
     ]
+
+
+def _forms(effect: Effect, base: Plant | None) -> list[tuple[Form, tuple[float, ...]]]:
+    """The forms on trial, with the values that the design gives them already."""
+    present = None if base is None else next((one for one in base.inserted if one.effect == effect.name), None)
+    if base is None or present is None:
+        return [(form, ()) for form in effect.forms]
+    if effect.name not in base.design.effects or not present.form.parameters:
+        return []
+    return [(present.form, tuple(present.values))]

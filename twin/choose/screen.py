@@ -18,7 +18,7 @@ from logs.recording import FloatArray
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, starts_of
 from twin.fit.least_squares import jacobian
-from twin.fit.space import Cause, Space, form_starts, make_space
+from twin.fit.space import Cause, Space, cause_starts, make_space
 from twin.plant import Plant
 
 #: Starts of a form that are looked at besides the one where it ended alone; forms with more are looked at there only.
@@ -124,7 +124,7 @@ def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:
     alone = make_space(space.base, (last,), (), space.scales)
     ended = [f for f in known if [(c.name, c.form) for c in f.space.causes] == [(last.name, last.form)]]
     options = starts_of(alone, ended) if ended else []
-    own = form_starts(last.form, space.scales, dense=False) if last.form.starts_for is None else []
+    own = cause_starts(last, space.scales, dense=False) if last.form.starts_for is None else []
     return options + (own if len(own) <= _MOST_STARTS or not options else [])
 
 

@@ -115,7 +115,7 @@ class Searcher:
         return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
 
     def _singles(self) -> list[Fit]:
-        causes = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
+        causes = number_causes(self.channel) + effect_causes(self.channel, self.base)
         numbers = number_causes(self.channel)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
@@ -125,7 +125,7 @@ class Searcher:
 
     def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
         """Every hypothesis of the beam with one more cause, of those that promise something."""
-        singles = number_causes(self.channel) + effect_causes(self.channel, {i.effect for i in self.base.inserted})
+        singles = number_causes(self.channel) + effect_causes(self.channel, self.base)
         fits: list[Fit] = []
         seen: set[tuple[str, ...]] = set()
         for parent in self._likely(level)[: self.rules.beam]:
@@ -144,7 +144,7 @@ class Searcher:
         """What drifts beside the likeliest cause, where it may hide in the noise: more is not to be found there."""
         if self.resting > self.rules.restless:
             return []
-        causes = [c for c in effect_causes(self.channel) if c.effect is not None and c.effect.drifts]
+        causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
         likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
         return best_forms(self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts"), self.channel.rows)

@@ -10,7 +10,7 @@ import numpy as np
 from logs.recording import FloatArray, Recording
 from twin.fit.channel import Channel
 from twin.fit.least_squares import Minimum, descend, minimise
-from twin.fit.space import Space, form_starts
+from twin.fit.space import Space, cause_starts
 from twin.plant import Plant
 
 #: How far off, in z, wrong numbers are also looked for: from their nominals the way may lead through a worse fit.
@@ -110,7 +110,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
         if cause.form is None:
             continue
         block = next((b for f in known if (b := _known_block(f, cause.name, cause.form.name)) is not None), None)
-        options = form_starts(cause.form, space.scales, record) if block is None else [block]
+        options = cause_starts(cause, space.scales, record) if block is None else [block]
         heads = [np.concatenate([head, option]) for head in heads for option in options]
     if known:
         for head in heads:

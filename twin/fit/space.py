@@ -30,11 +30,15 @@ REFERENCE = Scales()
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """An effect in one of its forms, or a design number (`form` is None)."""
+    """An effect in one of its forms, or a design number (`form` is None).
+
+    `held`: the values [record units] that the design already gives to this form; the cause is then their change.
+    """
 
     name: str
     effect: Effect | None = None
     form: Form | None = None
+    held: tuple[float, ...] = ()
 
     @property
     def stage(self) -> str:
@@ -71,13 +75,13 @@ class Space:
         values = [u.centre + u.unit * float(v) for u, v in zip(self.unknowns, z, strict=True)]
         design = retuned(self.base.design, dict(zip(self.numbers, values, strict=False)))
         at = len(self.numbers)
-        inserted = list(self.base.inserted)
+        inserted = []
         for cause in self.causes:
             if cause.effect is not None and cause.form is not None:
                 count = len(cause.form.parameters)
                 inserted.append(Inserted(cause.name, cause.form, tuple(values[at : at + count])))
                 at += count
-        return Plant(design, tuple(inserted))
+        return Plant(design, self.base.inserted).having(inserted)
 
     @property
     def lower(self) -> FloatArray:
@@ -107,7 +111,7 @@ def make_space(
     unknowns = [_number(base.design, n, spreads[n]) for n in kept]
     for cause in causes:
         if cause.form is not None:
-            unknowns += _form_unknowns(cause.name, cause.form, scales)
+            unknowns += _form_unknowns(cause.name, cause.form, scales, cause.held)
     return Space(base, tuple(causes), tuple(kept), tuple(unknowns), scales)
 
 
@@ -119,15 +123,29 @@ def _number(design: DesignModel, name: str, spread: float) -> Unknown:
     return Unknown(name, centre, size, lowest, highest, spread, 1e-3)
 
 
-def _form_unknowns(cause: str, form: Form, scales: Scales) -> list[Unknown]:
+def _form_unknowns(cause: str, form: Form, scales: Scales, held: Sequence[float]) -> list[Unknown]:
     unknowns = []
-    for p in form.parameters:
+    for k, p in enumerate(form.parameters):
         size = p.scale * scales.factor(p.kind)
-        centre = p.neutral * scales.factor(p.kind)
-        lower, upper = ((bound - p.neutral) / p.scale for bound in (p.lower, p.upper))
+        centre = held[k] if held else p.neutral * scales.factor(p.kind)
+        lower, upper = ((bound * scales.factor(p.kind) - centre) / size for bound in (p.lower, p.upper))
         step = 5e-3 if p.smooth else 4e-2
         unknowns.append(Unknown(f"{cause}.{p.name}", centre, size, lower, upper, _spread(p), step, p.smooth))
     return unknowns
+
+
+def cause_starts(
+    cause: Cause, scales: Scales = REFERENCE, record: Recording | None = None, dense: bool = True
+) -> list[FloatArray]:
+    """Start vectors of a cause's own unknowns in z; see `form_starts`.
+
+    What the design already has starts with each of its parameters halved, and larger by half, in turn.
+    """
+    assert cause.form is not None
+    if not cause.held:
+        return form_starts(cause.form, scales, record, dense)
+    sizes = [v / (p.scale * scales.factor(p.kind)) for p, v in zip(cause.form.parameters, cause.held, strict=True)]
+    return [share * size * row for row, size in zip(np.eye(len(sizes)), sizes, strict=True) for share in (-0.5, 0.5)]
 
 
 def form_starts(

@@ -15,7 +15,7 @@ from twin.next.criterion import Scale, effect_distance, lay_out, response
 from twin.next.limits import Limits
 from twin.next.rivals import Rival, rival_of
 from twin.next.search import value_of
-from twin.plant import Inserted, Plant
+from twin.plant import Inserted
 from twin.stages import StageResult
 
 #: Experiments that are looked at in full; the library comes sorted by length.
@@ -92,7 +92,7 @@ def _shares(
         scale = Scale(channel.name, channel.sigma, max(decision.findings.phi * period_s, 1e-3), excess)
         hidden, plain = response(design, bed, scale), design.plant()
         for spot in mine:
-            changed = Plant(plain.design, (*plain.inserted, spot.inserted))
+            changed = plain.having([spot.inserted])
             far = effect_distance(design, changed, hidden, bed, scale)
             material = rules.gain * (far.worth + known_s / scale.independent_s)
             shares[spot.name] = min(far.gain / rules.evidence, far.squared / material)

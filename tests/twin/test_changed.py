@@ -1,0 +1,90 @@
+"""An effect that the design's file already has: it may have changed, and then it is the cause."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import Recording
+from tests.twin.judged import a_record, judged
+from twin.case import make_case
+from twin.catalog import effect
+from twin.choose.candidates import effect_causes
+from twin.choose.decide import DecisionRules
+from twin.detectable import detection_limits
+from twin.effect import Scales
+from twin.fit.channel import position_channel
+from twin.fit.space import Cause, cause_starts, make_space
+from twin.insert import inserted_from, plant_of
+from twin.plant import Inserted, Plant
+
+LAG = effect("sensor_lag").form("first_order")
+
+
+def worn(lag_s: float) -> DesignModel:
+    """The default design with a slow sensor, as `diagnose` writes it into a model file."""
+    return replace(DesignModel(), effects={"sensor_lag": {"form": "first_order", "lag": lag_s}})
+
+
+@pytest.fixture(scope="module")
+def slow() -> Recording:
+    return a_record(plant_of(worn(0.5)))
+
+
+def test_what_the_design_has_and_the_valve_too_is_no_gap(slow: Recording) -> None:
+    result, judgement = judged(slow, worn(0.5))
+    assert judgement.verdict == "no_gap"
+    assert result.plant() == plant_of(worn(0.5))
+
+
+def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
+    result, judgement = judged(slow, worn(0.2))
+    assert [c.name for c in judgement.causes][:1] == ["sensor_lag"]
+    [sensor] = [one for one in result.plant().inserted if one.effect == "sensor_lag"]
+    assert sensor.values[0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_what_went_away_is_named_too() -> None:
+    result, judgement = judged(a_record(Plant(DesignModel())), worn(0.5))
+    assert [c.name for c in judgement.causes][:1] == ["sensor_lag"]
+    assert result.plant().inserted[0].values[0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_only_the_form_of_the_file_stands_trial(slow: Recording) -> None:
+    design = worn(0.2)
+    case = make_case([slow], design, inserted_from(design))
+    channel = position_channel(case.trials, case.sigma_y)
+    [cause] = [c for c in effect_causes(channel, case.base) if c.name == "sensor_lag"]
+    assert cause == Cause("sensor_lag", effect("sensor_lag"), LAG, (0.2,))
+    settled = Plant(DesignModel(), case.base.inserted)  # inserted for the record's sake: no file has it
+    assert "sensor_lag" not in {c.name for c in effect_causes(channel, settled)}
+
+
+def test_a_change_is_searched_from_what_the_design_has() -> None:
+    base = plant_of(worn(0.2))
+    cause = Cause("sensor_lag", effect("sensor_lag"), LAG, (0.2,))
+    space = make_space(base, (cause,), (), Scales())
+    assert space.plant(np.zeros(1)) == base
+    lags = sorted(space.plant(z).inserted[0].values[0] for z in cause_starts(cause, Scales()))
+    assert lags == pytest.approx([0.1, 0.3])
+
+
+def test_the_smallest_size_that_would_have_shown_is_that_of_a_change(slow: Recording) -> None:
+    limits = []
+    for record, design in ((a_record(Plant(DesignModel())), DesignModel()), (slow, worn(0.5))):
+        result, _ = judged(record, design)
+        case, channel = result.case, result.decisions[-1].findings.channel
+        [test] = detection_limits([channel], case.base, case.scales, [effect("sensor_lag")], DecisionRules())
+        assert test.detection_limit is not None
+        limits.append(test.detection_limit)
+    assert 0.5 < limits[1] / limits[0] < 2.0
+
+
+def test_one_effect_takes_the_place_of_another_of_its_name() -> None:
+    base = plant_of(worn(0.2))
+    more = Inserted("sensor_lag", LAG, (0.4,))
+    assert base.having([more]).inserted == (more,)
+    assert base.having([]).inserted == base.inserted
