@@ -165,7 +165,8 @@ class Effect:
     relative to others. `absorbs` are design numbers that have no sharp meaning beside it
     (an asymmetry has no canonical middle). `same_as` gives, per form, the effects that no record of
     these signals can tell from it. `twins` are effects with a similar signature; `equations` and `source` are printed.
-    What `drifts` makes repeats differ, and so hides in a noise that was measured between them.
+    What `drifts` makes repeats differ, and so hides in a noise that was measured between them. What is `erratic`
+    moves in jumps whose order hangs on the smallest difference: no model follows it for long.
     """
 
     name: str
@@ -180,6 +181,7 @@ class Effect:
     absorbs: tuple[str, ...] = ()
     same_as: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     drifts: bool = False
+    erratic: bool = False
 
     def form(self, name: str) -> Form:
         """The form called `name`; raises KeyError naming the forms there are."""

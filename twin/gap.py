@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.case import Case
+from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.trim import LIKELY, belief
 from twin.closure import rms
+from twin.diagnosis import Cause
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import make_space
@@ -35,8 +38,9 @@ DOUBTFUL = 1.6
 #: ... and one that misses by less has none worth a word, when its only cause was taken back.
 SLIGHT = 1.3
 #: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
-#: several that leave half of that: together they can imitate more.
-CLEAR, LEFT = 2.5, 0.2
+#: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
+#: An erratic cause (its jumps follow no model for long) may leave more.
+CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +112,7 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
     vain = after > NO_BETTER * before or _doubted(judgement)
     if before <= HARDLY * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if vain or _leaves(before, after, floor, len(judgement.causes)):
+    if vain or _leaves(before, after, floor, judgement.causes):
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
 
@@ -119,9 +123,13 @@ def _doubted(judgement: Judgement) -> bool:
     return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
 
 
-def _leaves(before: float, after: float, floor: float, causes: int) -> bool:
+def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause]) -> bool:
     """Whether the causes leave too much of a clear gap where no fit has seen it."""
-    share = LEFT if causes == 1 else 0.5 * LEFT
+    known = effects()
+    erratic = any(c.name in known and known[c.name].erratic for c in causes)
+    several = max(Counter(c.stage == "ep" for c in causes).values()) > 1
+    many = any(len(c.parameters) > FREE for c in causes)
+    share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
     return before > CLEAR * floor and after**2 - floor**2 > share * (before**2 - floor**2)
 
 

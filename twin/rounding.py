@@ -1,6 +1,7 @@
 """How a coarse reading rounds: to the nearest step, or always down, which is half a step of zero error.
 
 The second is no fault of calibration besides; it is put into the base model where the record fits it clearly better.
+Where the stem rests at a stop tells it best: there it is, whatever else is wrong with the valve.
 """
 
 from __future__ import annotations
@@ -8,10 +9,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
-from logs.recording import FloatArray, Recording
+from logs.recording import Recording
 from twin.catalog import effect
-from twin.fit.channel import chain_channel
+from twin.fit.channel import Channel, chain_channel
 from twin.fit.trial import make_trial
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
@@ -20,21 +22,32 @@ _STEP_S = 0.1
 #: How much smaller the squared error has to be; or how near, in half steps, the mean error to half a step.
 _CLEARLY = 0.8
 _NEARLY = 0.25
+#: Rows at a stop, within so many steps of it in model and reading, from which the stops alone decide.
+_ENOUGH, _AT_STOP = 50, 1.5
 
 
 def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> tuple[Inserted, ...]:
     """Half a step of zero error, one way or the other; nothing where the reading is fine or rounds to the nearest."""
     if "sensor_quantization" not in sensing.accepted:
         return ()
+    trials = [make_trial(r, _STEP_S, bad) for r, bad in zip(recordings, sensing.bad_rows, strict=True)]
+    channel = chain_channel(trials, 1.0)
+    groups = _telling_rows(channel, plant, sensing.step)
     form = effect("lvdt_calibration").form("zero")
     options = [(), *((Inserted("lvdt_calibration", form, (s * sensing.step,)),) for s in (-0.5, 0.5))]
-    errors = [_errors(recordings, Plant(plant.design, (*plant.inserted, *o)), sensing) for o in options]
-    misfits = [float(error @ error) for error in errors]
+    errors = [channel.residuals(Plant(plant.design, (*plant.inserted, *o))) for o in options]
+    misfits = [float(np.mean([np.mean(e[rows] ** 2) for rows in groups])) for e in errors]
     best = min(range(3), key=lambda k: misfits[k])
-    near = abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
+    near = abs(float(np.mean([np.mean(errors[best][rows]) for rows in groups]))) < 0.5 * _NEARLY * sensing.step
     return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
 
 
-def _errors(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> FloatArray:
-    trials = [make_trial(r, _STEP_S, bad) for r, bad in zip(recordings, sensing.bad_rows, strict=True)]
-    return chain_channel(trials, 1.0).residuals(plant)
+def _telling_rows(channel: Channel, plant: Plant, step: float) -> list[npt.NDArray[np.bool_]]:
+    """For each stop that was visited long enough, the rows at which model and reading are there; else all."""
+    model, near = channel.prediction(plant), _AT_STOP * step
+    groups = []
+    for stop in (0.0, plant.design.travel):
+        rows = channel.use & (np.abs(model - stop) < 0.1 * near) & (np.abs(channel.measured - stop) < near)
+        if np.count_nonzero(rows) >= _ENOUGH:
+            groups.append(rows)
+    return groups or [channel.use]

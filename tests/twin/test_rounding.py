@@ -17,6 +17,7 @@ from twin.sensing import Sensing
 
 STEP_IN = 0.0021
 LATE = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.3,))
+LOPSIDED = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (-0.2,))
 
 
 def coarse(*inserted: Inserted, down: bool) -> tuple[Recording, Sensing]:
@@ -35,7 +36,7 @@ def test_rounding_down_is_half_a_step(inserted: tuple[Inserted, ...]) -> None:
     assert found.values == pytest.approx((-0.5 * STEP_IN,))
 
 
-@pytest.mark.parametrize("inserted", [(), (LATE,)])
+@pytest.mark.parametrize("inserted", [(), (LATE,), (LOPSIDED,)])
 def test_rounding_to_the_nearest_is_nothing(inserted: tuple[Inserted, ...]) -> None:
     recording, seen = coarse(*inserted, down=False)
     assert rounding_down([recording], Plant(DESIGN), seen) == ()

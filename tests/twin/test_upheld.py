@@ -12,6 +12,7 @@ from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.claims import hollow
 from twin.diagnosis import Cause as Named
+from twin.diagnosis import Estimate
 from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import fit
@@ -61,6 +62,27 @@ def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
     assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN)[1].verdict == "unexplained"
     beside = replace(doubted, causes=(*NAMED.causes, replace(doubted.causes[0], name="stiction")))
     assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN)[1] is beside
+
+
+@pytest.mark.parametrize(
+    ("names", "left", "kept"),
+    [
+        (("creep",), 0.25, True),  # of the error, 6 % of its squares
+        (("creep",), 0.3, False),
+        (("creep", "sensor_lag"), 0.25, False),  # two of them can imitate more
+        (("creep", "dead_time"), 0.25, True),  # the converter shows in another signal
+        (("stiction",), 0.4, True),  # no model follows jumps for long
+        (("lvdt_drift",), 0.25, False),  # a form with so many numbers can imitate more
+    ],
+)
+def test_how_much_may_be_left_of_a_clear_gap(names: tuple[str, ...], left: float, kept: bool) -> None:
+    size = Estimate(0.01, (0.009, 0.011), "in")
+    numbers = {f"zero_{k}": size for k in range(10)}
+    causes = [Named(n, effect(n).stage, 0.9, None, numbers if n == "lvdt_drift" else {}) for n in names]
+    found = Judgement("effects", tuple(causes), (), ())
+    before = 40.0
+    judgement = upheld(parts(before, before, left * before), found, 1.0, NOTHING_SEEN)[1]
+    assert (judgement.verdict == "effects") is kept
 
 
 def test_what_the_readings_showed_needs_no_prediction() -> None:

@@ -129,4 +129,5 @@ EFFECT = Effect(
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),
     absorbs=("deadband",),
+    erratic=True,
 )
