@@ -144,7 +144,9 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence
-    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or gain > rules.complete * left)
+    # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
+    tidy = gain > rules.complete * left and size_of(large) < 3
+    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or tidy)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
     return significant and material and thorough
