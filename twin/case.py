@@ -14,6 +14,7 @@ from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted, Plant
+from twin.refresh import fresh_rows
 from twin.simulate import start_of
 from twin.timegrid import make_grid
 
@@ -76,10 +77,12 @@ def make_case(
     bad_rows: Sequence[npt.NDArray[np.bool_] | None] | None = None,
     noise: NoiseModel | None = None,
     step: float = 0.0,
+    held: bool = False,
 ) -> Case:
     """Prepares recordings against a design; `inserted` are effects that the design already has.
 
-    `step` is the resolution of the position reading: still readings on one step show no noise, and have some.
+    `step` is the resolution of the position reading: still readings on one step show no noise, and have some. `held`:
+    readings are seen to be refreshed more slowly than they are polled.
     """
     noise = noise or estimate_noise(recordings)
     span = design.travel / design.compliance
@@ -91,7 +94,7 @@ def make_case(
     )
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))
-    trials = tuple(_trial(base, r, b) for r, b in zip(recordings, bad, strict=True))
+    trials = tuple(_trial(base, r, b, held) for r, b in zip(recordings, bad, strict=True))
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)
@@ -108,10 +111,11 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
     return replace(case, sigma_y=sigma_y, sigma_p=sigma_p), max(shares) ** 2
 
 
-def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None) -> Trial:
+def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
     step_s = fine_step_s(base.design, recording)
     start = start_of(base, recording, make_grid(recording.time_s, step_s))
-    return make_trial(recording, step_s, bad, start.play if start.play != start.position else None)
+    play = start.play if start.play != start.position else None
+    return make_trial(recording, step_s, bad, play, fresh_rows(recording.position) if held else None)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:

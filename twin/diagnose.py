@@ -97,7 +97,7 @@ def diagnose(
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     inserted = (*inserted, *rounding_down(recordings, Plant(design, tuple(inserted)), sensing))
-    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step)
+    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step, sensing.held)
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
     late, late_notes = late_commands(look_at(case)[0])

@@ -146,7 +146,8 @@ class Form:
 
     `starts_for(time_s, reading, scales)` gives the values (in record units) that a fit to this record tries first,
     where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
-    recordings, in which it would have had to happen alike.
+    recordings, in which it would have had to happen alike. What is `seen` goes by the recorded readings'
+    own refresh, and is a candidate only where that is beyond doubt.
     """
 
     name: str
@@ -154,6 +155,7 @@ class Form:
     apply: Apply
     starts_for: StartsFor | None = None
     once: bool = False
+    seen: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray
@@ -47,6 +48,12 @@ def refreshes(time_s: FloatArray, reading: FloatArray) -> list[Refresh]:
                 if true * row_s < 0.97:
                     found.append(_refined(t, y, width, true))
     return found
+
+
+def fresh_rows(reading: FloatArray) -> npt.NDArray[np.intp]:
+    """The row in which each row's reading was new: its own, or the earlier one since which it is the same; (n,)."""
+    new = np.diff(reading, prepend=np.nan) != 0.0
+    return np.asarray(np.maximum.accumulate(np.where(new, np.arange(reading.size), 0)))
 
 
 def _lateness(t: FloatArray, y: FloatArray, width: float) -> FloatArray:

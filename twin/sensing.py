@@ -49,6 +49,11 @@ class Sensing:
         return (Inserted("sensor_quantization", effect("sensor_quantization").forms[0], (self.step,)),)
 
     @property
+    def held(self) -> bool:
+        """Whether readings are seen to be refreshed more slowly than they are polled."""
+        return "stale_samples" in self.accepted
+
+    @property
     def bad_rows(self) -> list[np.ndarray]:
         """False position readings per recording."""
         return [e.false_position for e in self.events]

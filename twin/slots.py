@@ -82,7 +82,8 @@ S_TRAVEL = 12  # travel that bow and swing refer to [position]
 S_WANDER_S = 13  # time between the knots of a wandering zero [s]; 0: it does not wander
 S_KNOTS = 14  # the zero at each of the knots after the start [position]
 KNOTS = 10
-S_COUNT = S_KNOTS + KNOTS
+S_SEEN = S_KNOTS + KNOTS  # 1: the reading is refreshed when the recorded one is seen to be
+S_COUNT = S_SEEN + 1
 
 FOREVER = 1e30
 

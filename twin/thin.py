@@ -139,8 +139,17 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     bad = _false_rows(whole)[span.start : span.stop][rows]
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
     start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
-    trial = make_trial(thin, step_s, bad, start.play if start.play != start.position else None)
+    play = start.play if start.play != start.position else None
+    trial = make_trial(thin, step_s, bad, play, _fresh_of(whole, span, rows))
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
+
+
+def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp] | None:
+    """For each kept row the kept row, at or before, in which its reading was new."""
+    if whole.fresh is None:
+        return None
+    new = np.maximum(whole.fresh[span.start : span.stop][rows] - span.start, rows[0])
+    return np.asarray(np.searchsorted(rows, new, side="right") - 1)
 
 
 def _led_in(trial: Trial, lead_s: float) -> Trial:

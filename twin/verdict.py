@@ -91,6 +91,7 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
         for candidate in decision.accepted.space.causes:
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
             parameters = {label: estimate for (_, label), estimate in own.items()}
+            parameters = parameters or sensing.accepted.get(candidate.name, {})
             causes.append(Cause(candidate.name, candidate.stage, weight.probability[candidate.name], None, parameters))
     for name, found in sensing.accepted.items():
         if name not in {c.name for c in causes}:

@@ -125,7 +125,7 @@ def test_every_start_changes_the_response(one: Effect, form: Form) -> None:
             change = response(one.name, form, tuple(values)) - response("", None, ())
             assert np.isfinite(change).all()
             assert (np.abs(change[stage_row]).max() > 1e-6) == (one.name not in WITHOUT_TRAJECTORY), (p.name, start)
-    if not form.parameters:
+    if not form.parameters and not form.seen:  # what is seen in the readings changes nothing where there are none
         assert np.abs(response(one.name, form, ()) - response("", None, ()))[stage_row].max() > 1e-3
 
 

@@ -21,12 +21,13 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     changed. What was inserted for the record's sake (a late sample, a reading that rounds down) is settled.
     """
     several = len(channel.trials) > 1
+    refreshed = all(trial.fresh is not None for trial in channel.trials)
     return [
         Cause(effect.name, effect, form, held)
         for effect in effects().values()
         if effect.stage in channel.stages and effect.evidence == "trajectory"
         for form, held in _forms(effect, base)
-        if not (form.once and several)
+        if not (form.once and several) and (refreshed or not form.seen)
     ]
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.refresh import refreshes
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_SEEN
 
 _PERIOD = Parameter(
     name="period",
@@ -39,6 +39,10 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_HOLD_PHASE_S] = values[0] * values[1]
 
 
+def _as_seen(c: Coefficients, _values: Sequence[float]) -> None:
+    c.sensor[S_SEEN] = 1.0
+
+
 def _seen(time_s: FloatArray, reading: FloatArray, _scales: Scales) -> list[tuple[float, ...]]:
     """The periods and phases that the reading's lateness suggests; between two rows any phase is as good."""
     starts: list[tuple[float, ...]] = []
@@ -53,8 +57,8 @@ EFFECT = Effect(
     name="stale_samples",
     stage="sensor",
     claim="The DAQ refreshes the reading more slowly than it is polled.",
-    equations="y(t) = x(n period + phase) until the next refresh",
+    equations="y(t) = x(n period + phase) until the next refresh; as_seen: until the recorded reading changes again",
     source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997; sample and hold)",
-    forms=(Form("periodic", (_PERIOD, _PHASE), _apply, _seen),),
+    forms=(Form("periodic", (_PERIOD, _PHASE), _apply, _seen), Form("as_seen", (), _as_seen, seen=True)),
     twins=("sensor_lag",),
 )

@@ -21,6 +21,7 @@ class Trial:
 
     `start_play` is the play output at the start where the valve was moving, None where it stood with the stem.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
+    `fresh` (int, shape (n,)) is the row in which each row's reading was new, where readings are seen to be held.
     """
 
     recording: Recording
@@ -31,6 +32,7 @@ class Trial:
     use_p: npt.NDArray[np.bool_]
     use_y: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
+    fresh: npt.NDArray[np.intp] | None = None
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""
@@ -42,6 +44,7 @@ def make_trial(
     step_s: float,
     bad_rows: npt.NDArray[np.bool_] | None = None,
     start_play: float | None = None,
+    fresh: npt.NDArray[np.intp] | None = None,
 ) -> Trial:
     """Prepares a recording; `bad_rows` are false readings of the position that no fit may see."""
     grid = make_grid(recording.time_s, step_s)
@@ -56,7 +59,7 @@ def make_trial(
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
-    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early)
+    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early, fresh=fresh)
 
 
 def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:

@@ -41,6 +41,7 @@ class Monitor:
         self._rules = rules or AlarmRules()
         self._twin: LiveTwin | None = None
         self._origin_s = 0.0
+        self._last = math.nan
         self._readings: list[float] = []
         self.cusum: Cusum | None = None
         self._state = CusumState()
@@ -63,7 +64,8 @@ class Monitor:
             pressure = row.get("pressure_psi") if self._unit == "psi" else None
             self._twin = LiveTwin.at_rest(self._plant, time_s, command, reading, pressure, self._duration_s)
             self._origin_s = time_s
-        _, predicted = self._twin.step(time_s, command)
+        _, predicted = self._twin.step(time_s, command, fresh=reading != self._last)
+        self._last = reading
         residual = reading - predicted
         if self.cusum is None:
             self._learn(time_s, reading)

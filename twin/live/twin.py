@@ -15,7 +15,7 @@ from twin.live.sensor import Sensor
 from twin.live.valve import Valve
 from twin.plant import Plant, stem_at
 from twin.simulate import Start, step_for
-from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+from twin.slots import S_SEEN, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
 
 _MOST_STEPS = 10_000
 
@@ -30,6 +30,7 @@ class LiveTwin:
         self, plant: Plant, time_s: float, command: float, start: Start, duration_s: float, step_s: float | None = None
     ) -> None:
         c = plant.coefficients(duration_s)
+        self._as_seen = bool(c.sensor[S_SEEN])
         self._step_s = step_s or step_for(plant.design)
         self._time_s = time_s
         self._converter = Converter(c.ep, time_s, command, start.pressure)
@@ -48,8 +49,10 @@ class LiveTwin:
         known = command if pressure is None or not math.isfinite(pressure) else pressure
         return cls(plant, time_s, command, Start(known, stem, stem), duration_s)
 
-    def step(self, time_s: float, command: float) -> tuple[float, float]:
+    def step(self, time_s: float, command: float, fresh: bool = True) -> tuple[float, float]:
         """Pressure and reading predicted at `time_s`; `command` was in force since the row before.
+
+        A model whose readings are held as they are seen to be keeps its own while the valve's is not `fresh`.
 
         A row that is not later than the one before changes nothing.
         """
@@ -60,7 +63,8 @@ class LiveTwin:
         offsets = np.array([0, steps], dtype=np.int64)
         pressure = self._converter.advance(ends, offsets, command)
         stem = self._valve.advance(ends, offsets, pressure)
-        self.position = self._sensor.advance(ends, offsets, stem)
+        position = self._sensor.advance(ends, offsets, stem)
+        self.position = position if fresh or not self._as_seen else self.position
         self.pressure = float(pressure[-1])
         self._time_s = time_s
         return self.pressure, self.position

@@ -56,6 +56,18 @@ def test_is_silent_beside_its_own_model() -> None:
     assert math.isfinite(seen[-1].statistic)
 
 
+def test_a_model_with_held_readings_waits_for_the_valves() -> None:
+    position = readings(Plant(DesignModel()))
+    held = position[np.arange(position.size) // 7 * 7]
+    as_seen = Inserted("stale_samples", effect("stale_samples").form("as_seen"), ())
+    spread = []
+    for plant in (Plant(DesignModel()), Plant(DesignModel(), (as_seen,))):
+        monitor = Monitor(plant, "psi", 300.0)
+        spread.append(np.std([monitor.see(row).residual for row in rows(held)]))
+    assert spread[0] > 5.0 * SIGMA
+    assert spread[1] == pytest.approx(SIGMA, rel=0.15)
+
+
 def test_says_when_and_where_a_sensor_has_slipped() -> None:
     position = readings(Plant(DesignModel()))
     position[1500:] += 0.03 * 0.5625

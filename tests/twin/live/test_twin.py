@@ -15,7 +15,7 @@ from twin.live.twin import LiveTwin
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording
 
-FORMS = [(name, form.name) for name, effect in effects().items() for form in effect.forms]
+FORMS = [(name, form.name) for name, effect in effects().items() for form in effect.forms if not form.seen]
 
 
 def jagged_record(n: int = 900) -> Recording:

@@ -1,0 +1,84 @@
+"""Readings that are seen to be held are replayed as they were held; what else is wrong shows beside them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from tests.twin.judged import a_record
+from twin.case import make_case
+from twin.catalog import effect
+from twin.choose.candidates import effect_causes
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.plant import Inserted, Plant
+from twin.refresh import fresh_rows
+from twin.simulate import simulate_recording
+from twin.stages import judge
+from twin.thin import look_at
+
+AS_SEEN = Inserted("stale_samples", effect("stale_samples").form("as_seen"), ())
+_SIGNALS = ("time_s", "command", "position")
+CREEP = Inserted("creep", effect("creep").form("one_tail"), (0.05, 40.0))
+
+
+def held(reading: FloatArray, seed: int = 3) -> FloatArray:
+    """The reading refreshed every one to twelve rows, at no rhythm."""
+    dice = np.random.default_rng(seed)
+    new = np.zeros(reading.size, dtype=bool)
+    new[np.cumsum(dice.integers(1, 13, reading.size)) % reading.size] = True
+    rows = np.maximum.accumulate(np.where(new, np.arange(reading.size), 0))
+    return np.asarray(reading[rows])
+
+
+@pytest.fixture(scope="module")
+def stale() -> Recording:
+    """A creeping valve whose reading is held."""
+    record = a_record(Plant(DesignModel(), (CREEP,)), twice=True)
+    return replace(record, position=held(record.position))
+
+
+def test_a_row_is_as_fresh_as_the_last_change() -> None:
+    reading = np.array([1.0, 1.0, 2.0, 2.0, 2.0, np.nan, 3.0, 1.0])
+    assert fresh_rows(reading).tolist() == [0, 0, 2, 2, 2, 5, 6, 7]
+
+
+def test_a_replay_holds_what_the_record_held(stale: Recording) -> None:
+    model = Plant(DesignModel(), (CREEP,))
+    _, plain = simulate_recording(model, stale)
+    _, again = simulate_recording(Plant(model.design, (CREEP, AS_SEEN)), stale)
+    np.testing.assert_array_equal(again, plain[fresh_rows(stale.position)])
+    assert np.std(stale.position - again) < 0.5 * np.std(stale.position - plain)
+
+
+def test_held_readings_are_a_candidate_only_where_they_are_seen(stale: Recording) -> None:
+    for seen in (False, True):
+        case = make_case([stale], DesignModel(), held=seen)
+        channel = judge(case, SearchRules(most=1), DecisionRules(), lambda _w, _s: None).decisions[-1].findings.channel
+        assert ("as_seen" in {c.form.name for c in effect_causes(channel) if c.form}) is seen
+
+
+def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None:
+    case = make_case([stale], DesignModel(), held=True)
+    result = judge(case, SearchRules(most=2), DecisionRules(), lambda _w, _s: None)
+    assert set(result.causes) == {"creep", "stale_samples"}
+    [creep] = [one for one in result.plant().inserted if one.effect == "creep"]
+    assert creep.values[0] == pytest.approx(0.05, abs=0.01)
+
+
+def test_a_look_at_part_of_the_rows_knows_when_they_were_fresh(stale: Recording) -> None:
+    parts = [replace(stale, time_s=stale.time_s + k * (stale.time_s[-1] + 0.2)) for k in range(12)]
+    time_s, command, position = (np.concatenate([getattr(p, n) for p in parts]) for n in _SIGNALS)
+    long = Recording("long", time_s, command, position, None)
+    case = make_case([long], DesignModel(), held=True)
+    look, _ = look_at(case)
+    [trial] = look.trials
+    assert look is not case and trial.fresh is not None
+    rows = np.searchsorted(long.time_s, trial.recording.time_s)
+    assert np.all(trial.fresh <= np.arange(trial.fresh.size))
+    whole = fresh_rows(long.position)[rows]
+    assert np.all(rows[trial.fresh] <= np.maximum(whole, rows[0]))
