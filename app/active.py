@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from logs.recording import Recording
     from twin.diagnose import Outcome
 
-SURE = 0.95  # every named cause above it, and nothing left to be confused with
+SURE = 0.85  # every named cause above it, and nothing left to be confused with
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ def pursue(
 
 
 def is_sure(last: Round) -> bool:
-    """Whether causes are named, each with more than 0.95, and none could be another."""
+    """Whether causes are named, each with more than `SURE`, and none could be another."""
     return bool(last.causes) and not last.confusable and min(p for _, p in last.causes) > SURE
 
 

@@ -28,7 +28,7 @@ class Weights:
 
     temperature: float = 10.0
     confusable: float = 0.03
-    ceiling: float = 0.97
+    ceiling: float = 0.9
     twin_ceiling: float = 0.6
 
 

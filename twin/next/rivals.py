@@ -15,7 +15,7 @@ from twin.stages import StageResult, combined
 from twin.verdict import Judgement
 
 #: A cause named with less than this is in dispute even without a confusion set.
-SURE = 0.95
+SURE = 0.85
 
 
 @dataclass(frozen=True, slots=True, eq=False)
