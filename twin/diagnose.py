@@ -29,6 +29,7 @@ from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
+from twin.refresh import refreshed_together
 from twin.repeatable import disturbance
 from twin.rounding import rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
@@ -97,7 +98,7 @@ def diagnose(
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     inserted = (*inserted, *rounding_down(recordings, Plant(design, tuple(inserted)), sensing))
-    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step, sensing.held)
+    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step, _held(recordings, sensing))
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
     late, late_notes = late_commands(look_at(case)[0])
@@ -138,6 +139,11 @@ def diagnose(
     if judgement.verdict == "unexplained":
         diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, loud, swing))
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
+
+
+def _held(recordings: Sequence[Recording], sensing: Sensing) -> bool:
+    """Whether the position, and not the pressure with it, is seen to be refreshed more slowly than polled."""
+    return sensing.held and not any(refreshed_together(r) for r in recordings)
 
 
 def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, sensing: Sensing) -> Plant:

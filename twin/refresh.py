@@ -14,11 +14,13 @@ import numpy as np
 import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 
 #: Width of the smooth, in rows; refreshes much slower than this are smooth themselves.
 _WIDTHS = (4.0, 16.0)
 _LINES = 2
+#: By how much more often the pressure repeats where the position does, of 1.
+_TOGETHER = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +56,20 @@ def fresh_rows(reading: FloatArray) -> npt.NDArray[np.intp]:
     """The row in which each row's reading was new: its own, or the earlier one since which it is the same; (n,)."""
     new = np.diff(reading, prepend=np.nan) != 0.0
     return np.asarray(np.maximum.accumulate(np.where(new, np.arange(reading.size), 0)))
+
+
+def refreshed_together(recording: Recording) -> bool:
+    """Whether the pressure is held in the rows in which the position is, and not in the others: one slow converter.
+
+    What drives the model is then as late as what it is compared with.
+    """
+    if recording.pressure is None:
+        return False
+    held = np.diff(recording.position) == 0.0
+    same = np.diff(recording.pressure) == 0.0
+    if not held.any() or held.all():
+        return False
+    return bool(np.mean(same[held]) - np.mean(same[~held]) > _TOGETHER)
 
 
 def _lateness(t: FloatArray, y: FloatArray, width: float) -> FloatArray:

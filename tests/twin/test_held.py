@@ -16,7 +16,7 @@ from twin.choose.candidates import effect_causes
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.plant import Inserted, Plant
-from twin.refresh import fresh_rows
+from twin.refresh import fresh_rows, refreshed_together
 from twin.simulate import simulate_recording
 from twin.stages import judge
 from twin.thin import look_at
@@ -82,3 +82,11 @@ def test_a_look_at_part_of_the_rows_knows_when_they_were_fresh(stale: Recording)
     assert np.all(trial.fresh <= np.arange(trial.fresh.size))
     whole = fresh_rows(long.position)[rows]
     assert np.all(rows[trial.fresh] <= np.maximum(whole, rows[0]))
+
+
+def test_one_slow_converter_for_both_signals_is_told_from_a_slow_position(stale: Recording) -> None:
+    assert stale.pressure is not None
+    coarse = replace(stale, pressure=np.round(stale.pressure / 0.05) * 0.05)
+    both = replace(stale, pressure=stale.pressure[fresh_rows(stale.position)])
+    told = [refreshed_together(r) for r in (stale, coarse, both, replace(stale, pressure=None))]
+    assert told == [False, False, True, False]
