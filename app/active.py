@@ -20,8 +20,6 @@ if TYPE_CHECKING:
     from logs.recording import Recording
     from twin.diagnose import Outcome
 
-SURE = 0.85  # every named cause above it, and nothing left to be confused with
-
 
 @dataclass(frozen=True, slots=True)
 class Round:
@@ -86,7 +84,9 @@ def pursue(
 
 
 def is_sure(last: Round) -> bool:
-    """Whether causes are named, each with more than `SURE`, and none could be another."""
+    """Whether causes are named, each beyond dispute, and none could be another."""
+    from twin.next.rivals import SURE
+
     return bool(last.causes) and not last.confusable and min(p for _, p in last.causes) > SURE
 
 

@@ -48,9 +48,7 @@ class Table:
             return self._parsed(header, array)
         try:
             return np.asarray(array.cast(pa.float64(), safe=False).to_numpy(zero_copy_only=False), dtype=np.float64)
-        except pa.ArrowInvalid as error:
-            raise BadInput(f"{self.where}: column '{header}' holds text ({error}); it must hold numbers") from error
-        except pa.ArrowNotImplementedError as error:
+        except pa.ArrowException as error:
             raise BadInput(f"{self.where}: column '{header}' holds {array.type}; it must hold numbers") from error
 
     def is_calendar(self, header: str) -> bool:

@@ -70,15 +70,15 @@ def _limit(
     rules: DecisionRules,
 ) -> float:
     """Smallest size in record units; infinite where the response is nil."""
-    main, held = _main(form), next((one for one in base.inserted if one.effect == effect.name), None)
-    if main is None or (held is not None and held.form.name != form.name):
+    main, present = _main(form), next((one for one in base.inserted if one.effect == effect.name), None)
+    if main is None or (present is not None and present.form.name != form.name):
         return float("inf")
     sizes = sorted(
         form.parameters[0].starts if main is form.parameters[0] else main.starts, key=lambda s: abs(s - main.neutral)
     )
     plain = channel.residuals(base)
     for size in sizes:
-        values = _sized(form, main, size, held, scales)
+        values = _sized(form, main, size, present, scales)
         changed = channel.residuals(base.having([Inserted(effect.name, form, values)]))
         change = changed - plain
         change -= nuisance @ (nuisance.T @ change)
@@ -89,12 +89,12 @@ def _limit(
     return float("inf")
 
 
-def _sized(form: Form, main: Parameter, size: float, held: Inserted | None, scales: Scales) -> tuple[float, ...]:
+def _sized(form: Form, main: Parameter, size: float, present: Inserted | None, scales: Scales) -> tuple[float, ...]:
     """Values of the form at `size` of its main parameter; a form that the design has changes by as much."""
-    if held is None:
+    if present is None:
         return tuple((size if p is main else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
     change = (size - main.neutral) * scales.factor(main.kind)
-    return tuple(v + change if p is main else v for p, v in zip(form.parameters, held.values, strict=True))
+    return tuple(v + change if p is main else v for p, v in zip(form.parameters, present.values, strict=True))
 
 
 def _main(form: Form) -> Parameter | None:

@@ -125,7 +125,7 @@ def diagnose(
         if needed is not result:
             result, everything = needed, replace(everything, decisions=needed.decisions)
             where = whereabouts(case, everything, settings.seed)
-        parts, judgement = upheld(parts, judgement, case.sigma_y, sensing)
+        parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, case.sigma_p is not None)
         final = _final_plant(case, result, judgement, retuned, sensing)
         diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)

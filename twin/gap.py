@@ -95,12 +95,14 @@ def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, trave
     return min(spare, key=lambda name: parts.without[name])
 
 
-def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing) -> tuple[GapParts, Judgement]:
+def upheld(
+    parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing, apart: bool
+) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
     A cause is not named for an error below the noise, nor when the model with it predicts no better; nor is a design
     without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
-    needs no prediction.
+    needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -112,7 +114,7 @@ def upheld(parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing
     vain = after > NO_BETTER * before or _doubted(judgement)
     if before <= HARDLY * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if vain or _leaves(before, after, floor, judgement.causes):
+    if vain or _leaves(before, after, floor, judgement.causes, apart):
         return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
     return parts, judgement
 
@@ -123,11 +125,11 @@ def _doubted(judgement: Judgement) -> bool:
     return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
 
 
-def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause]) -> bool:
+def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool) -> bool:
     """Whether the causes leave too much of a clear gap where no fit has seen it."""
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
-    several = max(Counter(c.stage == "ep" for c in causes).values()) > 1
+    several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
     many = any(len(c.parameters) > FREE for c in causes)
     share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
     return before > CLEAR * floor and after**2 - floor**2 > share * (before**2 - floor**2)

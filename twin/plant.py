@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+import numpy.typing as npt
 
 from control.design import DesignModel
 from logs.recording import FloatArray
@@ -22,6 +23,7 @@ from twin.slots import (
     GRID,
     S_BOW,
     S_GAIN,
+    S_SEEN,
     S_SWING,
     S_TRAVEL,
     S_ZERO,
@@ -100,11 +102,16 @@ def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: flo
     return out
 
 
-def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray) -> FloatArray:
-    """Reading at the rows, shape (n,), from the stem on the fine grid."""
+def reading_response(
+    c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: npt.NDArray[np.intp] | None = None
+) -> FloatArray:
+    """Reading at the rows, shape (n,), from the stem on the fine grid.
+
+    `fresh`: the row in which each row's recorded reading was new, for effects that go by it.
+    """
     out = np.empty(grid.time_s.size)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out)
-    return out
+    return out if fresh is None or c.sensor[S_SEEN] == 0.0 else out[fresh]
 
 
 def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]:

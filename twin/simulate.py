@@ -12,7 +12,6 @@ from logs.recording import FloatArray, Recording
 from twin.insert import inserted_from, plant_of
 from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
 from twin.refresh import fresh_rows
-from twin.slots import S_SEEN
 from twin.timegrid import TimeGrid, make_grid
 
 __all__ = ["Start", "inserted_from", "plant_of", "simulate_recording", "start_of", "step_for"]
@@ -58,10 +57,7 @@ def simulate_recording(
     c = plant.coefficients(recording.duration_s)
     pressure = pressure_response(c, grid, recording.command, first.pressure)
     stem = stem_response(c, grid, pressure, first.position, first.play)
-    reading = reading_response(c, grid, stem)
-    if c.sensor[S_SEEN] != 0.0 and np.isfinite(recording.position).any():
-        reading = reading[fresh_rows(recording.position)]
-    return pressure[grid.offsets], reading
+    return pressure[grid.offsets], reading_response(c, grid, stem, fresh_rows(recording.position))
 
 
 def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:

@@ -92,7 +92,9 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
             parameters = {label: estimate for (_, label), estimate in own.items()}
             parameters = parameters or sensing.accepted.get(candidate.name, {})
-            causes.append(Cause(candidate.name, candidate.stage, weight.probability[candidate.name], None, parameters))
+            seen = _EVENT_PROBABILITY if candidate.name in sensing.accepted else 0.0
+            probability = max(weight.probability[candidate.name], seen)
+            causes.append(Cause(candidate.name, candidate.stage, probability, None, parameters))
     for name, found in sensing.accepted.items():
         if name not in {c.name for c in causes}:
             causes.append(Cause(name, "sensor", _EVENT_PROBABILITY, None, found))

@@ -43,7 +43,7 @@ def parts(before: float, retuned: float, after: float) -> GapParts:
     ],
 )
 def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, left: float) -> None:
-    kept, judgement = upheld(parts(*levels), NAMED, 1.0, NOTHING_SEEN)
+    kept, judgement = upheld(parts(*levels), NAMED, 1.0, NOTHING_SEEN, True)
     assert judgement.verdict == verdict
     assert bool(judgement.causes) == (verdict == "effect")
     assert kept.after[0] == left
@@ -52,16 +52,16 @@ def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, le
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "no_gap"), (2.0, "unexplained")])
 def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, verdict: str) -> None:
     nothing = Judgement("no_gap", (), (), ())
-    kept, judgement = upheld(parts(before, 0.8 * before, before), nothing, 1.0, NOTHING_SEEN)
+    kept, judgement = upheld(parts(before, 0.8 * before, before), nothing, 1.0, NOTHING_SEEN, True)
     assert judgement.verdict == verdict
     assert kept.after[0] == pytest.approx(before if verdict == "no_gap" else 0.8 * before)
 
 
 def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
     doubted = replace(NAMED, causes=(replace(NAMED.causes[0], probability=0.3),))
-    assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN)[1].verdict == "unexplained"
+    assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN, True)[1].verdict == "unexplained"
     beside = replace(doubted, causes=(*NAMED.causes, replace(doubted.causes[0], name="stiction")))
-    assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN)[1] is beside
+    assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN, True)[1] is beside
 
 
 @pytest.mark.parametrize(
@@ -81,22 +81,29 @@ def test_how_much_may_be_left_of_a_clear_gap(names: tuple[str, ...], left: float
     causes = [Named(n, effect(n).stage, 0.9, None, numbers if n == "lvdt_drift" else {}) for n in names]
     found = Judgement("effects", tuple(causes), (), ())
     before = 40.0
-    judgement = upheld(parts(before, before, left * before), found, 1.0, NOTHING_SEEN)[1]
+    judgement = upheld(parts(before, before, left * before), found, 1.0, NOTHING_SEEN, True)[1]
     assert (judgement.verdict == "effects") is kept
+
+
+def test_without_a_pressure_a_cause_before_it_counts_with_those_behind() -> None:
+    both = tuple(Named(n, effect(n).stage, 0.9, None, {}) for n in ("creep", "dead_time"))
+    found = Judgement("effects", both, (), ())
+    told = [upheld(parts(40.0, 40.0, 10.0), found, 1.0, NOTHING_SEEN, apart)[1].verdict for apart in (True, False)]
+    assert told == ["effects", "unexplained"]
 
 
 def test_what_the_readings_showed_needs_no_prediction() -> None:
     seen = Sensing((), {"sensor_quantization": {}}, 0.01)
-    assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen)[1] is NAMED
+    assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen, True)[1] is NAMED
 
 
 def test_beside_what_the_readings_showed_nothing_is_named_for_an_error_below_the_floor() -> None:
     seen = Sensing((), {"sensor_quantization": {}}, 0.06)
     coarse = Named("sensor_quantization", "sensor", 0.97, None, {})
     both = replace(NAMED, verdict="effects", causes=(*NAMED.causes, coarse))
-    _, judgement = upheld(parts(0.99, 1.0, 0.9), both, 1.0, seen)
+    _, judgement = upheld(parts(0.99, 1.0, 0.9), both, 1.0, seen, True)
     assert judgement.verdict == "effect" and judgement.causes == (coarse,) and judgement.confusable == ()
-    assert upheld(parts(3.0, 1.0, 0.9), both, 1.0, seen)[1] is both
+    assert upheld(parts(3.0, 1.0, 0.9), both, 1.0, seen, True)[1] is both
 
 
 def test_an_effect_without_a_size_is_hollow() -> None:

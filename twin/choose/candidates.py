@@ -23,10 +23,10 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     several = len(channel.trials) > 1
     refreshed = all(trial.fresh is not None for trial in channel.trials)
     return [
-        Cause(effect.name, effect, form, held)
+        Cause(effect.name, effect, form, values)
         for effect in effects().values()
         if effect.stage in channel.stages and effect.evidence == "trajectory"
-        for form, held in _forms(effect, base)
+        for form, values in _forms(effect, base)
         if not (form.once and several) and (refreshed or not form.seen)
     ]
 

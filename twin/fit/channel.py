@@ -15,7 +15,6 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
-from twin.slots import S_SEEN
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -47,8 +46,7 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s)
     start = stem_at(c, trial.start_position)
     play = start if trial.start_play is None else trial.start_play
-    reading = reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play))
-    return reading if trial.fresh is None or c.sensor[S_SEEN] == 0.0 else reading[trial.fresh]
+    return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play), trial.fresh)
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,13 +32,13 @@ REFERENCE = Scales()
 class Cause:
     """An effect in one of its forms, or a design number (`form` is None).
 
-    `held`: the values [record units] that the design already gives to this form; the cause is then their change.
+    `present`: the values [record units] that the design already gives to this form; the cause is then their change.
     """
 
     name: str
     effect: Effect | None = None
     form: Form | None = None
-    held: tuple[float, ...] = ()
+    present: tuple[float, ...] = ()
 
     @property
     def stage(self) -> str:
@@ -111,7 +111,7 @@ def make_space(
     unknowns = [_number(base.design, n, spreads[n]) for n in kept]
     for cause in causes:
         if cause.form is not None:
-            unknowns += _form_unknowns(cause.name, cause.form, scales, cause.held)
+            unknowns += _form_unknowns(cause.name, cause.form, scales, cause.present)
     return Space(base, tuple(causes), tuple(kept), tuple(unknowns), scales)
 
 
@@ -123,11 +123,11 @@ def _number(design: DesignModel, name: str, spread: float) -> Unknown:
     return Unknown(name, centre, size, lowest, highest, spread, 1e-3)
 
 
-def _form_unknowns(cause: str, form: Form, scales: Scales, held: Sequence[float]) -> list[Unknown]:
+def _form_unknowns(cause: str, form: Form, scales: Scales, present: Sequence[float]) -> list[Unknown]:
     unknowns = []
     for k, p in enumerate(form.parameters):
         size = p.scale * scales.factor(p.kind)
-        centre = held[k] if held else p.neutral * scales.factor(p.kind)
+        centre = present[k] if present else p.neutral * scales.factor(p.kind)
         lower, upper = ((bound * scales.factor(p.kind) - centre) / size for bound in (p.lower, p.upper))
         step = 5e-3 if p.smooth else 4e-2
         unknowns.append(Unknown(f"{cause}.{p.name}", centre, size, lower, upper, _spread(p), step, p.smooth))
@@ -139,13 +139,16 @@ def cause_starts(
 ) -> list[FloatArray]:
     """Start vectors of a cause's own unknowns in z; see `form_starts`.
 
-    What the design already has starts with each of its parameters halved, and larger by half, in turn.
+    What the design already has also starts with each of its parameters halved, and larger by half, in turn.
     """
     assert cause.form is not None
-    if not cause.held:
-        return form_starts(cause.form, scales, record, dense)
-    sizes = [v / (p.scale * scales.factor(p.kind)) for p, v in zip(cause.form.parameters, cause.held, strict=True)]
-    return [share * size * row for row, size in zip(np.eye(len(sizes)), sizes, strict=True) for share in (-0.5, 0.5)]
+    starts = form_starts(cause.form, scales, record, dense)
+    if not cause.present:
+        return starts
+    here = _in_z(cause.form, cause.present, scales)
+    sizes = [v / (p.scale * scales.factor(p.kind)) for p, v in zip(cause.form.parameters, cause.present, strict=True)]
+    near = [share * size * row for row, size in zip(np.eye(len(sizes)), sizes, strict=True) for share in (-0.5, 0.5)]
+    return near + [start - here for start in starts]
 
 
 def form_starts(
