@@ -21,7 +21,7 @@ from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, upheld
+from twin.gap import GapParts, retuning_pays, upheld
 from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
@@ -126,7 +126,7 @@ def diagnose(
             result, everything = needed, replace(everything, decisions=needed.decisions)
             where = whereabouts(case, everything, settings.seed)
         parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, case.sigma_p is not None)
-        final = _final_plant(case, result, judgement, retuned, sensing)
+        final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
         diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
         loop = closed_loop(recordings, final)
@@ -146,12 +146,12 @@ def _held(recordings: Sequence[Recording], sensing: Sensing) -> bool:
     return sensing.held and not any(refreshed_together(r) for r in recordings)
 
 
-def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit, sensing: Sensing) -> Plant:
-    """The updated model: the design for no gap, re-tuned when unexplained, with the causes otherwise."""
+def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit | None, sensing: Sensing) -> Plant:
+    """The updated model: the design for no gap, re-tuned where unexplained and that pays, with the causes otherwise."""
     if judgement.verdict == "no_gap":
         return case.base
     if judgement.verdict == "unexplained":
-        return retuned.plant
+        return case.base if retuned is None else retuned.plant
     found = result.plant() if {c.name for c in judgement.causes} - set(sensing.accepted) else case.base
     return found.having(sensing.inserted())
 

@@ -106,17 +106,28 @@ def upheld(
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
-        return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
+        return _unexplained(parts, judgement)
     if not judgement.causes:
-        return parts, judgement
+        return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
         return parts, _only_seen(judgement, sensing) if before <= floor else judgement
     vain = after > NO_BETTER * before or _doubted(judgement)
     if before <= HARDLY * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
     if vain or _leaves(before, after, floor, judgement.causes, apart):
-        return replace(parts, after=parts.retuned), Judgement("unexplained", (), judgement.ranking, ())
+        return _unexplained(parts, judgement)
     return parts, judgement
+
+
+def retuning_pays(parts: GapParts) -> bool:
+    """Whether the re-tuned design predicts unseen data better than the design as given."""
+    return rms(parts.retuned) < rms(parts.before)
+
+
+def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judgement]:
+    """No causes; what is left is the better of the design as given and the re-tuned one."""
+    after = parts.retuned if retuning_pays(parts) else parts.before
+    return replace(parts, after=after), Judgement("unexplained", (), judgement.ranking, ())
 
 
 def _doubted(judgement: Judgement) -> bool:

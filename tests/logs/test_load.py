@@ -5,6 +5,8 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as pq
 import pytest
 
 from hal.errors import BadInput
@@ -114,6 +116,14 @@ def test_what_cannot_be_used_is_refused_in_one_sentence(
     for word in words:
         assert word in message
     assert "\n" not in message
+
+
+@pytest.mark.parametrize(("column", "kind"), [([{"in": 1.0}] * 3, "struct"), ([[1.0]] * 3, "list")])
+def test_a_parquet_column_that_is_no_number_is_refused(tmp_path: Path, column: list[object], kind: str) -> None:
+    table = pa.table({"time_s": [0.0, 1.0, 2.0], "command_psi": [3.0, 4.0, 5.0], "position_in": column})
+    pq.write_table(table, tmp_path / "odd.parquet")
+    with pytest.raises(BadInput, match=f"column 'position_in' holds {kind}"):
+        load_recording(tmp_path / "odd.parquet")
 
 
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:

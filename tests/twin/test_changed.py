@@ -20,6 +20,7 @@ from twin.fit.channel import position_channel
 from twin.fit.space import Cause, cause_starts, make_space
 from twin.insert import inserted_from, plant_of
 from twin.plant import Inserted, Plant
+from twin.whereabouts import whereabouts
 
 LAG = effect("sensor_lag").form("first_order")
 
@@ -45,6 +46,15 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
     assert [c.name for c in judgement.causes][:1] == ["sensor_lag"]
     [sensor] = [one for one in result.plant().inserted if one.effect == "sensor_lag"]
     assert sensor.values[0] == pytest.approx(0.5, abs=0.02)
+
+
+def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
+    result, _ = judged(slow, worn(0.2))
+    attributed = whereabouts(result.case, result, 1).attributed
+    assert attributed is not None
+    shares = {stage: share.value for stage, share in attributed.items()}
+    assert shares["sensor"] == pytest.approx(1.0, abs=0.05)
+    assert shares["ep"] == pytest.approx(0.0, abs=0.05)
 
 
 def test_what_went_away_is_named_too() -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.catalog import effect
@@ -20,8 +21,9 @@ LATE = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.3,))
 LOPSIDED = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (-0.2,))
 
 
-def coarse(*inserted: Inserted, down: bool) -> tuple[Recording, Sensing]:
-    trial, _ = trial_of(Plant(DESIGN, inserted), staircase())
+def coarse(*inserted: Inserted, down: bool, design: DesignModel = DESIGN) -> tuple[Recording, Sensing]:
+    to_the_stops = np.repeat([3.0, 14.0], 400)
+    trial, _ = trial_of(Plant(design, inserted), np.concatenate([staircase(), to_the_stops]))
     steps = trial.recording.position / STEP_IN
     position = STEP_IN * (np.floor(steps) if down else np.round(steps))
     none = np.zeros(position.size, dtype=bool)
@@ -39,6 +41,14 @@ def test_rounding_down_is_half_a_step(inserted: tuple[Inserted, ...]) -> None:
 @pytest.mark.parametrize("inserted", [(), (LATE,), (LOPSIDED,)])
 def test_rounding_to_the_nearest_is_nothing(inserted: tuple[Inserted, ...]) -> None:
     recording, seen = coarse(*inserted, down=False)
+    assert rounding_down([recording], Plant(DESIGN), seen) == ()
+
+
+def test_curves_that_are_half_a_step_off_are_no_rounding() -> None:
+    """Between the stops they look like it; at the stops they do not."""
+    shift = 0.5 * STEP_IN / DESIGN.compliance
+    moved = replace(DESIGN, a1=DESIGN.a1 + shift, a2=DESIGN.a2 + shift)
+    recording, seen = coarse(down=False, design=moved)
     assert rounding_down([recording], Plant(DESIGN), seen) == ()
 
 

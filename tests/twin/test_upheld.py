@@ -57,6 +57,17 @@ def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, ve
     assert kept.after[0] == pytest.approx(before if verdict == "no_gap" else 0.8 * before)
 
 
+@pytest.mark.parametrize(("retuned", "left"), [(2.0, 2.0), (4.0, 3.0)])
+def test_a_retuned_design_that_predicts_worse_is_not_handed_out(retuned: float, left: float) -> None:
+    nothing = Judgement("unexplained", (), (), ())
+    for found in (nothing, NAMED):
+        kept, judgement = upheld(
+            parts(3.0, retuned, 2.9 if found is NAMED else retuned), found, 1.0, NOTHING_SEEN, True
+        )
+        assert judgement.verdict == "unexplained"
+        assert kept.after[0] == left and kept.retuned[0] == retuned
+
+
 def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
     doubted = replace(NAMED, causes=(replace(NAMED.causes[0], probability=0.3),))
     assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN, True)[1].verdict == "unexplained"
