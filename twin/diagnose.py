@@ -30,7 +30,7 @@ from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
-from twin.repeatable import disturbance
+from twin.repeatable import Disturbance, disturbance
 from twin.rounding import rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
@@ -115,7 +115,7 @@ def diagnose(
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
         ep_share = where.stage["ep"].value if where.stage else 0.0
-        loud, swing = disturbance(case, settings.margin.position), swing_of_position(everything)
+        loud, swing = disturbance(case, everything.trials, settings.margin.position), swing_of_position(everything)
         notes += [swing_note(swing, case.scales.position_unit)] if swing else []
         disturbed = loud is not None or swing is not None
         hearing = Hearing(look, retuned, sensing, ep_share, settings.weights, disturbed)
@@ -127,7 +127,9 @@ def diagnose(
             where = whereabouts(case, everything, settings.seed)
         parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, case.sigma_p is not None)
         final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
-        diagnosis = _assembled(case, result, judgement, where, parts, settings, notes)
+        diagnosis = _assembled(
+            case, result, judgement, where, parts, _floor(case, parts, judgement, loud), settings, notes
+        )
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
         loop = closed_loop(recordings, final)
     except KeyboardInterrupt as stop:
@@ -162,10 +164,10 @@ def _assembled(
     judgement: Judgement,
     where: Where,
     parts: GapParts,
+    floor: float,
     settings: Settings,
     notes: Sequence[DataNote],
 ) -> Diagnosis:
-    floor = _floor(case, parts, judgement)
     memory = case.noise.position.correlation_samples
     numbers = gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, settings.seed)
     causes = tuple(replace(c, heldout_gap_without=parts.without.get(c.name)) for c in judgement.causes)
@@ -195,10 +197,13 @@ def _assembled(
     return replace(diagnosis, statement=statement(diagnosis))
 
 
-def _floor(case: Case, parts: GapParts, judgement: Judgement) -> float:
-    """The noise of the position; where named causes predict better than repeats agree, no more than is left."""
+def _floor(case: Case, parts: GapParts, judgement: Judgement, loud: Disturbance | None) -> float:
+    """The noise of the position; where named causes predict better than repeats agree, no more than is left.
+
+    What does not repeat, and should, is a gap and no floor.
+    """
     if not judgement.causes:
-        return case.sigma_y
+        return loud.resting if loud is not None and loud.signal == "position" else case.sigma_y
     known = case.noise.position.by_source
     resting = known.get("still", known.get("straight", case.sigma_y))
     return min(case.sigma_y, max(rms(parts.after), resting))

@@ -8,19 +8,23 @@ is named as what it is. Source: pure error against lack of fit, Draper, Smith, A
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.case import Case
+from twin.fit.channel import predict_reading_given_pressure
 from twin.fit.trial import Trial
 from twin.noise.model import LOUD
 from twin.noise.repeats import find_repeats
+from twin.noise.robust import robust_sigma
 
 #: Repeats are too different when they differ by many times the resting reading's noise (`LOUD`), and by this share of
-#: travel, or by the pressure that moves the stem so far.
+#: travel, or by the pressure that moves the stem so far. Where the measured pressure accounts for its own wandering,
+#: what is left need not be so loud.
 MATERIAL = 0.006
+UNLIKE, MATERIAL_GIVEN_PRESSURE = 2.0, 0.003
 
 
 def repeated_share(residuals: FloatArray, trials: Sequence[Trial]) -> float | None:
@@ -50,8 +54,11 @@ class Disturbance:
     unit: str
 
 
-def disturbance(case: Case, margin_position: float = 0.0) -> Disturbance | None:
-    """The loudest signal that does not repeat, if there is one that matters for the stem; None without repeats."""
+def disturbance(case: Case, trials: Sequence[Trial] = (), margin_position: float = 0.0) -> Disturbance | None:
+    """The loudest signal that does not repeat, if there is one that matters for the stem; None without repeats.
+
+    `trials`: the recordings with their measured pressure, where there is one; `margin_position`: see `Margin`.
+    """
     design = case.base.design
     slack = MATERIAL * design.travel + 2.0 * margin_position
     signals = (
@@ -64,4 +71,22 @@ def disturbance(case: Case, margin_position: float = 0.0) -> Disturbance | None:
         between = noise.by_source.get("repeats", 0.0)
         if between > LOUD * noise.sigma and between * gain > slack:
             return Disturbance(name, between, noise.sigma, unit)
-    return None
+    return _given_the_pressure(case, trials, MATERIAL_GIVEN_PRESSURE * design.travel + 2.0 * margin_position)
+
+
+def _given_the_pressure(case: Case, trials: Sequence[Trial], slack: float) -> Disturbance | None:
+    """The same for the position, less what the design makes of the pressure that was measured each time."""
+    known = case.noise.position.by_source
+    resting = known.get("still", known.get("straight", 0.0))
+    driven = [t for t in trials if t.pressure is not None]
+    if not resting or len(driven) < len(trials) or known.get("repeats", 0.0) <= UNLIKE * resting:
+        return None
+    errors = [
+        replace(t.recording, position=t.recording.position - predict_reading_given_pressure(case.base, t))
+        for t in driven
+    ]
+    pieces = [piece for pair in find_repeats(errors) if (piece := pair.difference("position")) is not None]
+    between = robust_sigma(np.concatenate(pieces)) if pieces else 0.0
+    if between <= max(UNLIKE * resting, slack):
+        return None
+    return Disturbance("position", between, resting, case.base.design.position_unit)

@@ -6,12 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter1d
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
 from twin.diagnose import diagnose
+from twin.fit.smooth import smoothed_pressure
 from twin.fit.trial import Trial
 from twin.lateness import late_commands
 from twin.plant import Plant
@@ -64,6 +66,32 @@ def test_a_loud_swing_that_does_not_repeat_is_unexplained_and_described() -> Non
     signature = found.residual_signature
     assert signature["strongest_frequency_hz"] == pytest.approx(1.0 / 17.3, rel=0.15)
     assert "does_not_repeat" in signature
+
+
+def test_beside_a_measured_pressure_a_smaller_swing_shows() -> None:
+    """Less than `LOUD` and `MATERIAL` ask for."""
+    healthy = recorded(0.0)
+    slow = gaussian_filter1d(np.random.default_rng(4).normal(0.0, 1.0, healthy.n), 25.0)
+    restless = replace(healthy, position=healthy.position + 0.002 * slow / slow.std())
+    assert disturbance(make_case([restless], DESIGN)) is None
+    found = diagnose([restless], DesignModel()).diagnosis
+    assert found.verdict == "unexplained"
+    assert found.gap.before > 2.0 * found.gap.noise_floor
+    assert diagnose([replace(restless, pressure=None)], DesignModel()).diagnosis.verdict == "no_gap"
+
+
+def test_a_pressure_that_wanders_and_is_measured_is_no_disturbance() -> None:
+    trial, _ = trial_of(Plant(DESIGN), twice())
+    command = trial.recording.command
+    wandering = command + 0.025 * np.sin(2.0 * np.pi * trial.recording.time_s / 23.7)
+    moved = trial_of(Plant(DESIGN), wandering)[0].recording
+    noise = np.random.default_rng(3).normal(0.0, 8e-3, moved.n)
+    case = make_case([replace(moved, command=command, pressure=np.asarray(moved.pressure) + noise)], DESIGN)
+    known = case.noise.position.by_source
+    assert known["repeats"] > 2.0 * known["still"]
+    assert case.sigma_p is not None
+    driven = [t.with_pressure(smoothed_pressure(case.base, t, case.sigma_p)) for t in case.trials]
+    assert disturbance(case, driven) is None
 
 
 def test_a_healthy_valve_has_no_disturbance() -> None:
