@@ -17,7 +17,7 @@ from app.blind.designs import FOLDER
 from app.blind.excite import commands, open_loop
 from control.design import DesignModel, save_design
 from control.identify import identify
-from logs.recording import Recording
+from logs.recording import FloatArray, Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
 from twin.case import make_case
@@ -56,13 +56,14 @@ def fitted(recording: Recording) -> DesignModel:
     return design
 
 
-def left(design: DesignModel, seed: int) -> np.ndarray:
+def left(design: DesignModel, seed: int) -> FloatArray:
     """RMS of the noise-free pressure [psi] and position [in] that the model misses, after the first seconds."""
     recording = healthy(seed, noise=0.0)
     assert recording.pressure is not None
     pressure, position = simulate_recording(design, recording)
     errors = np.stack([recording.pressure - pressure, recording.position - position])
-    return np.sqrt(np.mean(errors[:, 50:] ** 2, axis=1))
+    missed: FloatArray = np.sqrt(np.mean(errors[:, 50:] ** 2, axis=1))
+    return missed
 
 
 def main() -> None:
