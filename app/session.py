@@ -6,12 +6,12 @@ The virtual valve sits behind a pseudo-terminal and answers Modbus frames; its t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING
 
 import click
 
@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from hal.safety import SafeBench
     from sim_device.sealed import Sealed
     from sim_device.valve import ValvePhysics
-
-F = TypeVar("F", bound=Callable[..., Any])
 
 _PACE = {"real": "real time", "stepped": "its time stepped, faster than real"}
 DEADMAN_S = 2.0  # a command so much overdue means that the program hangs: the valve goes to safety without it
@@ -57,49 +55,6 @@ class Session:
             return f"bench '{self.profile.name}' on {port}"
         pace = _PACE[str(self.virtual["time"])]
         return f"the virtual valve ('{self.virtual['physics']}') behind {port}, Modbus RTU, {pace}"
-
-
-def bench_options(command: F) -> F:
-    """`--port --profile --physics --seed --effect --real-time`: which bench. The same words in every verb."""
-    options = (
-        click.option(
-            "--port", metavar="PORT", help="Serial port, tcp:// or rtu+tcp://HOST:PORT.  [default: virtual valve]"
-        ),
-        click.option("--profile", metavar="FILE|NAME", help="Bench profile.  [default: virtual]"),
-        click.option("--physics", metavar="NAME", help="Plant of the virtual valve.  [default: thesis]"),
-        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all chance."),
-        click.option(
-            "--effect",
-            "effects",
-            metavar="NAME=SIZE",
-            multiple=True,
-            help="Imperfection of the virtual valve, stiction=0.4.",
-        ),
-        click.option("--real-time", is_flag=True, help="Let the virtual valve live in real time."),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
-
-
-def sealed_option(command: F) -> F:
-    """`--sealed SEED`: a virtual valve with something, or nothing, wrong with it, for a blind check."""
-    return click.option(
-        "--sealed", metavar="SEED", help="A virtual valve with something, or nothing, wrong: drawn, not told."
-    )(command)
-
-
-def record_options(command: F) -> F:
-    """`--out --note --operator --live`: what is kept of a run, and who watches."""
-    options = (
-        click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Run folder; new or empty."),
-        click.option("--note", default="", help="What the record should say about this run."),
-        click.option("--operator", default="", help="Who runs it."),
-        click.option("--live", is_flag=True, help="Stream to rerun while running."),
-    )
-    for option in reversed(options):
-        command = option(command)
-    return command
 
 
 @contextmanager

@@ -18,25 +18,25 @@ if TYPE_CHECKING:
 
 @contextmanager
 def open_to_look(
-    port: str | None,
-    profile: str | None,
+    port: str | None = None,
+    profile: str | Profile | None = None,
     *,
     physics: str | None = None,
     seed: int = 0,
     effects: Sequence[str] = (),
-    stepped: bool = False,
+    real_time: bool = True,
 ) -> Iterator[tuple[ModbusBench, Clock]]:
-    """The bench of a profile at `port`; without one, a virtual valve, in real time unless `stepped`.
+    """The bench of a profile at `port`; without one, a virtual valve, whose time may be stepped.
 
     Raises: `BadInput`, `PortFault`, `WireFault`, `BenchFault`.
     """
     from hal.clock import RealClock, SteppedClock
     from hal.errors import BadInput
     from hal.modbus_bench import ModbusBench
-    from hal.profile import load_profile
+    from hal.profile import Profile, load_profile
     from hal.reopen import Reopening
 
-    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
     if port is not None:
         if physics or effects:
             raise BadInput("--physics and --effect belong to the virtual valve; leave them out with --port")
@@ -45,7 +45,7 @@ def open_to_look(
         with ModbusBench(found, port, clock, read_only=True, reopening=reopening) as bench:
             yield bench, clock
         return
-    clock = SteppedClock() if stepped else RealClock()
+    clock = RealClock() if real_time else SteppedClock()
     with (
         _virtual(found, physics, seed, effects, clock) as device,
         ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,

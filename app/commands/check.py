@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from app.session import bench_options
+from app.options import BenchWords, bench_options, profile_of
 
 if TYPE_CHECKING:
     from app.bench_check import Finding
@@ -21,15 +21,10 @@ if TYPE_CHECKING:
 @click.option("--leak", is_flag=True, help="Also pressurise the valve, and look at supply and leaks. This moves it.")
 @click.option("--json", "as_json", is_flag=True, help="Print the findings as JSON.")
 def command(
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    effects: tuple[str, ...],
-    real_time: bool,
     period_s: float | None,
     leak: bool,
     as_json: bool,
+    **words: Unpack[BenchWords],
 ) -> None:
     """Look at a bench without moving anything: identity, readings, line, calibration, safe state.
 
@@ -40,7 +35,9 @@ def command(
     from app.watch import open_to_look
     from hal.errors import JobFailed
 
-    with open_to_look(port, profile, physics=physics, seed=seed, effects=effects) as (bench, _):
+    words["profile"] = profile_of(words["profile"], words["physics"])
+    watched: BenchWords = {**words, "real_time": True}
+    with open_to_look(**watched) as (bench, _):
         findings = look(bench, period_s)
     if not as_json:
         _print(findings)
@@ -48,9 +45,7 @@ def command(
         from app.session import open_bench
 
         click.echo("the valve will now be pressurised for half a minute, then go to its safe command", err=as_json)
-        with open_bench(
-            port, bench.profile, physics=physics, seed=seed, effects=effects, real_time=real_time
-        ) as session:
+        with open_bench(**words) as session:
             found = pressurise(session)
         findings += found
         if not as_json:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from app.session import bench_options, sealed_option
+from app.options import bench_options, profile_of, sealed_option
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -123,9 +123,8 @@ def _pursued(
     from dataclasses import asdict
 
     from app.active import Round, first_experiment, pursue, runner
-    from hal.profile import load_profile
 
-    found = load_profile(bench["profile"] or ("positioner" if bench["physics"] == "positioner" else "virtual"))
+    found = profile_of(bench["profile"], bench["physics"])
     first = None if recordings else first_experiment(found.command_unit, budget_minutes)
 
     def tell(last: Round) -> None:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Unpack
 
 import click
 
-from app.session import bench_options
+from app.options import BenchWords, bench_options, profile_of
 
 
 @click.command(context_settings={"ignore_unknown_options": True})
@@ -18,14 +19,9 @@ from app.session import bench_options
               help="Time between two readings [s].")  # fmt: skip
 def command(
     steps: tuple[str, ...],
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    effects: tuple[str, ...],
-    real_time: bool,
     dwell_s: float,
     period_s: float,
+    **words: Unpack[BenchWords],
 ) -> None:
     """Move the valve by hand: STEPs like +0.5 -1 +0.25 (relative) or =8 (absolute), in psi, or percent.
 
@@ -35,21 +31,19 @@ def command(
     from app.hold import hold
     from app.session import open_bench
     from hal.latch import Latch
-    from hal.profile import load_profile
     from hal.signals import stop_signals
 
-    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    found = words["profile"] = profile_of(words["profile"], words["physics"])
     moves = [_parse(step) for step in steps]
     limits, unit = found.limits, found.command_unit
     click.echo(
         f"the valve will move by your steps, between {limits.command_min:g} and {limits.command_max:g} {unit}, "
         f"{dwell_s:g} s each, then go to its safe command"
     )
-    if port is not None:
-        Latch.of_port(port).check()
-    live = real_time or (port is None and not steps)
-    opening = open_bench(port, found, physics=physics, seed=seed, effects=effects, real_time=live)
-    with stop_signals() as stop, opening as session:
+    if words["port"] is not None:
+        Latch.of_port(words["port"]).check()
+    words["real_time"] |= words["port"] is None and not steps
+    with stop_signals() as stop, open_bench(**words) as session:
         at = session.command_in_force
 
         def commands() -> Iterator[tuple[float, float | None]]:

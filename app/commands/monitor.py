@@ -5,11 +5,11 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from itertools import islice
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from app.session import bench_options
+from app.options import BenchWords, bench_options, profile_of
 
 if TYPE_CHECKING:
     from hal.clock import Clock
@@ -25,15 +25,10 @@ if TYPE_CHECKING:
 @click.option("--count", type=click.IntRange(min=1), metavar="N", help="Stop after N readings.")
 @click.option("--json", "as_json", is_flag=True, help="Print one JSON object per reading.")
 def command(
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    effects: tuple[str, ...],
-    real_time: bool,
     period_s: float,
     count: int | None,
     as_json: bool,
+    **words: Unpack[BenchWords],
 ) -> None:
     """Show the readings of a bench until Ctrl-C, or --count of them; nothing is written and the valve stays as it is.
 
@@ -45,9 +40,9 @@ def command(
     from hal.errors import BadInput
     from hal.signals import stop_signals
 
-    stepped = count is not None and not real_time
-    opening = open_to_look(port, profile, physics=physics, seed=seed, effects=effects, stepped=stepped)
-    with stop_signals() as stop, opening as (bench, clock):
+    words["profile"] = profile_of(words["profile"], words["physics"])
+    words["real_time"] |= count is None
+    with stop_signals() as stop, open_to_look(**words) as (bench, clock):
         unit, least_s = bench.info.command_unit, bench.info.min_period_s
         if period_s < least_s:
             raise BadInput(f"--period {period_s:g} s is shorter than the line can carry; the least is {least_s:.4g} s")

@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from app.session import bench_options, open_bench, record_options, sealed_option
+from app.options import bench_options, record_options, sealed_option
+from app.session import open_bench
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Unpack
+
 import click
 
-from app.session import bench_options
+from app.options import BenchWords, bench_options, profile_of
 
 
 @click.command(name="set")
@@ -16,15 +18,10 @@ from app.session import bench_options
 @click.option("--acknowledge", is_flag=True, help="You have looked at the valve: lift the emergency stop first.")
 def command(
     value: float | None,
-    port: str | None,
-    profile: str | None,
-    physics: str | None,
-    seed: int,
-    effects: tuple[str, ...],
-    real_time: bool,
     hold_s: float | None,
     period_s: float,
     acknowledge: bool,
+    **words: Unpack[BenchWords],
 ) -> None:
     """Hold the valve at VALUE (psi, or percent) and show its readings until Ctrl-C or --hold.
 
@@ -35,27 +32,23 @@ def command(
     from app.session import open_bench
     from hal.errors import BadInput
     from hal.latch import Latch
-    from hal.profile import load_profile
     from hal.signals import stop_signals
 
     if value is None and not acknowledge:
         raise BadInput("give the command to hold, for example `lostmotion set 8.5`, or --acknowledge")
-    found = load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+    found = words["profile"] = profile_of(words["profile"], words["physics"])
     low, high, unit = found.limits.command_min, found.limits.command_max, found.command_unit
     if value is not None and not low <= value <= high:
         raise BadInput(f"{value:g} {unit} is outside the limits of profile '{found.name}', {low:g} to {high:g} {unit}")
-    if port is not None and not acknowledge:
-        Latch.of_port(port).check()
+    if words["port"] is not None and not acknowledge:
+        Latch.of_port(words["port"]).check()
     if value is None:
         click.echo("lifting the emergency stop; the valve stays at its safe command")
     else:
         end = "until Ctrl-C" if hold_s is None else f"for {hold_s:g} s"
         click.echo(f"the valve will go to {value:g} {unit} and be held there {end}, then go to its safe command")
-    live = real_time or (port is None and hold_s is None)
-    opening = open_bench(
-        port, found, physics=physics, seed=seed, effects=effects, real_time=live, acknowledge=acknowledge
-    )
-    with stop_signals() as stop, opening as session:
+    words["real_time"] |= words["port"] is None and hold_s is None
+    with stop_signals() as stop, open_bench(**words, acknowledge=acknowledge) as session:
         if value is not None:
             hold(session, [(value, hold_s)], period_s, stop)
     click.echo("the valve is at its safe command")

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from app.session import bench_options, open_bench, record_options, sealed_option
+from app.options import bench_options, profile_of, record_options, sealed_option
+from app.session import open_bench
 
 if TYPE_CHECKING:
     from app.job import Job
@@ -55,9 +56,8 @@ def command(
     **bench: Any,
 ) -> None:
     from control.experiment_file import save_experiment
-    from hal.profile import load_profile
 
-    found = load_profile(bench["profile"] or ("positioner" if bench["physics"] == "positioner" else "virtual"))
+    found = profile_of(bench["profile"], bench["physics"])
     experiment, first, continues = _experiment(what, resume, settings, bench["seed"], found.command_unit)
     if period_s is not None:
         experiment = replace(experiment, period_s=period_s)

@@ -1,0 +1,77 @@
+"""Options that several verbs share: which bench, and what is kept of a run. The same words in every verb."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
+
+import click
+
+if TYPE_CHECKING:
+    from hal.profile import Profile
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+class BenchWords(TypedDict):
+    """What `bench_options` hands to a verb, as `open_bench` and `open_to_look` take it."""
+
+    port: str | None
+    profile: str | Profile | None
+    physics: str | None
+    seed: int
+    effects: tuple[str, ...]
+    real_time: bool
+
+
+def profile_of(profile: str | Profile | None, physics: str | None) -> Profile:
+    """The profile that is meant; the pilot positioner has its own. Raises: `BadInput`."""
+    from hal.profile import Profile, load_profile
+
+    if isinstance(profile, Profile):
+        return profile
+    return load_profile(profile or ("positioner" if physics == "positioner" else "virtual"))
+
+
+def bench_options(command: F) -> F:
+    """`--port --profile --physics --seed --effect --real-time`: which bench."""
+    options = (
+        click.option(
+            "--port", metavar="PORT", help="Serial port, tcp:// or rtu+tcp://HOST:PORT.  [default: virtual valve]"
+        ),
+        click.option("--profile", metavar="FILE|NAME", help="Bench profile.  [default: virtual]"),
+        click.option("--physics", metavar="NAME", help="Plant of the virtual valve.  [default: thesis]"),
+        click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Seed of all chance."),
+        click.option(
+            "--effect",
+            "effects",
+            metavar="NAME=SIZE",
+            multiple=True,
+            help="Imperfection of the virtual valve, stiction=0.4.",
+        ),
+        click.option("--real-time", is_flag=True, help="Let the virtual valve live in real time."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def sealed_option(command: F) -> F:
+    """`--sealed SEED`: a virtual valve with something, or nothing, wrong with it, for a blind check."""
+    return click.option(
+        "--sealed", metavar="SEED", help="A virtual valve with something, or nothing, wrong: drawn, not told."
+    )(command)
+
+
+def record_options(command: F) -> F:
+    """`--out --note --operator --live`: what is kept of a run, and who watches."""
+    options = (
+        click.option("--out", type=click.Path(path_type=Path, file_okay=False), help="Run folder; new or empty."),
+        click.option("--note", default="", help="What the record should say about this run."),
+        click.option("--operator", default="", help="Who runs it."),
+        click.option("--live", is_flag=True, help="Stream to rerun while running."),
+    )
+    for option in reversed(options):
+        command = option(command)
+    return command
