@@ -5,7 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_CREEP1, V_CREEP1_TAU_S, V_CREEP2, V_CREEP2_TAU_S, V_FORCE_CREEP, V_FORCE_CREEP_TAU_S
+from twin.slots import (
+    V_CREEP1,
+    V_CREEP1_TAU_S,
+    V_CREEP2,
+    V_CREEP2_TAU_S,
+    V_FORCE_CREEP,
+    V_FORCE_CREEP_TAU_S,
+    V_TARGET_CREEPS,
+)
 
 #: The second time constant of the two-tail form is this many times the first.
 RATIO = 6.0
@@ -46,6 +54,16 @@ def _two_tails(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_CREEP2_TAU_S] = RATIO * values[1]
 
 
+def _pull(c: Coefficients, values: Sequence[float]) -> None:
+    _one_tail(c, values)
+    c.valve[V_TARGET_CREEPS] = 1.0
+
+
+def _pull_twice(c: Coefficients, values: Sequence[float]) -> None:
+    _two_tails(c, values)
+    c.valve[V_TARGET_CREEPS] = 1.0
+
+
 def _force(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_FORCE_CREEP] = values[0]
     c.valve[V_FORCE_CREEP_TAU_S] = values[1]
@@ -56,11 +74,14 @@ EFFECT = Effect(
     stage="actuator",
     claim="A slow tail follows the fast response.",
     equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
-    "6 tail; force: the same on the pressure before the play",
+    "6 tail; pull: the same on the target of the stem, before its lag and rate limit (on the stem where the two act on "
+    "each other); force: the same on the pressure before the play",
     source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
     forms=(
         Form("one_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail")), _one_tail),
         Form("two_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _two_tails),
+        Form("pull_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the pull")), _pull),
+        Form("pull_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _pull_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
     ),
     absorbs=("compliance", "tau"),

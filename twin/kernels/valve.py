@@ -38,6 +38,7 @@ from twin.slots import (
     V_STEP,
     V_STEP_TIME_S,
     V_STRIBECK,
+    V_TARGET_CREEPS,
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
     V_TAU_CLOSE_S,
@@ -67,7 +68,13 @@ def valve_kernel(
     widening = _widening(time_s, offsets, c)
     tables = (float(tables[0]), float(tables[1]), *tables[2:])
     _stem(time_s, offsets, force, widening, c, tables, plays, bends, (float(start[0]), float(start[1])), out)
-    _creep(time_s, offsets, c, out)
+    if c[V_TARGET_CREEPS] == 0.0 or couples(c, bends):
+        _creep(time_s, offsets, c, out)
+
+
+def couples(c: FloatArray, bends: Bends) -> bool:
+    """Whether target and stem act on each other."""
+    return bool(c[_COUPLING].any() or bends[0].size > 1)
 
 
 def _stem(
@@ -84,13 +91,15 @@ def _stem(
 ) -> None:
     """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
     low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
-    if c[_COUPLING].any() or bends[0].size > 1:
+    if couples(c, bends):
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
         what = (c, stops, tables, plays, bends)
         state, elements = coupled_start(float(force[0]), float(widening[0]), *what, start)
         coupled_steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
         target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
+        if c[V_TARGET_CREEPS] != 0.0:
+            _creep(time_s, offsets, c, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
         stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], out)
@@ -126,7 +135,7 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
 
 
 def _creep(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, out: FloatArray) -> None:
-    """Replaces part of the motion by its slow tails."""
+    """Replaces part of the motion by its slow tails: of the stem, or of its target where these are apart."""
     shares = [(c[share], c[tau]) for share, tau in _CREEPS if c[share] != 0.0]
     if shares:
         out += sum(share * (lagged(time_s, offsets, out, tau_s) - out) for share, tau_s in shares)

@@ -8,13 +8,13 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients
+from twin.kernels import valve as kernels
 from twin.kernels.play import plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
 from twin.plant import curve_tables
 from twin.slots import (
-    V_BREAKAWAY,
     V_CREEP1,
     V_CREEP1_TAU_S,
     V_CREEP2,
@@ -26,9 +26,7 @@ from twin.slots import (
     V_FORCE_CREEP_TAU_S,
     V_HARD_HIGH,
     V_HARD_LOW,
-    V_HELD,
     V_HIGH,
-    V_IN_MOTION,
     V_LOW,
     V_OUTER,
     V_OUTER_CENTRE,
@@ -37,15 +35,12 @@ from twin.slots import (
     V_RATE_OPEN,
     V_STEP,
     V_STEP_TIME_S,
-    V_STRIBECK,
+    V_TARGET_CREEPS,
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
-    V_WEAR,
 )
-
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD]
 
 
 class Mover(Protocol):
@@ -66,17 +61,13 @@ class Valve:
         self._force_tail = Lag(float(c.valve[V_FORCE_CREEP_TAU_S]))
         self._outer = float(c.valve[V_OUTER_CENTRE] + c.valve[V_OUTER_SLOPE] * w0)
         self._mover: Mover = Stuck(c, x0, w0) if couples(c) else Sliding(c, x0, w0)
-        tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
-        self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c.valve[a] != 0.0]
+        self._tails = Tails(c if c.valve[V_TARGET_CREEPS] == 0.0 or couples(c) else None)
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
         """Stem on the fine points of the row, shape of `pressure`; the first point is the end of the row before."""
         force = self._force(time_s, offsets, pressure)
         stem = self._mover.advance(time_s, offsets, force, self._widening(time_s, offsets))
-        if self._tails:
-            late = sum(share * (lag.follow(time_s, offsets, stem) - stem) for share, lag in self._tails)
-            return stem + late
-        return stem
+        return self._tails.follow(time_s, offsets, stem)
 
     def _force(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
         c = self._c
@@ -104,6 +95,19 @@ class Valve:
         return widening
 
 
+class Tails:
+    """Slow tails that replace part of a motion, with their state; none for no coefficients."""
+
+    def __init__(self, c: Coefficients | None) -> None:
+        tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S)) if c is not None else ()
+        self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c is not None and c.valve[a]]
+
+    def follow(self, time_s: FloatArray, offsets: np.ndarray, values: FloatArray) -> FloatArray:
+        """The block of fine values with its tails, shape of `values`."""
+        late = [share * (lag.follow(time_s, offsets, values) - values) for share, lag in self._tails]
+        return values + np.sum(late, axis=0) if late else values
+
+
 class Sliding:
     """Play and stem where they do not act on each other."""
 
@@ -113,6 +117,7 @@ class Sliding:
         self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
         self._elements = [w0] * c.spreads.size
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
+        self._tails = Tails(c if v[V_TARGET_CREEPS] != 0.0 else None)
         self._after = Lag(float(v[V_TAU_AFTER_S]))
         self._lags_s, self._rates = v[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], v[[V_RATE_CLOSE, V_RATE_OPEN]]
         self._low, self._high = max(v[V_LOW], v[V_HARD_LOW]), min(v[V_HIGH], v[V_HARD_HIGH])
@@ -125,7 +130,7 @@ class Sliding:
             one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
             self._elements[k] = float(one[-1])
             target += weight * one
-        target = self._after.follow(time_s, offsets, target)
+        target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
         out = np.empty(force.size)
         stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, out)
         self._x = float(out[-1])
@@ -137,4 +142,4 @@ _WHOLE = np.ones(1)
 
 def couples(c: Coefficients) -> bool:
     """Whether play and stem act on each other."""
-    return bool(c.valve[_COUPLING].any() or c.stem_bends[0].size > 1)
+    return kernels.couples(c.valve, c.stem_bends)
