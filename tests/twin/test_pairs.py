@@ -87,3 +87,21 @@ def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
     assert 2 in sizes and 3 not in sizes
     bold = Searcher(channel, Plant(DESIGN), Scales(), replace(rules, hopeless=1.0)).run().fits
     assert 3 in {len(f.names) for f in bold}
+
+
+def test_a_third_cause_is_not_looked_for_where_it_would_not_be_accepted() -> None:
+    assert SearchRules().scant == DecisionRules().share
+    lag = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.9,))
+    bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.02,))
+    trial, _ = trial_of(Plant(DESIGN, (lag, bow)), staircase())
+    slow = 1e-3 * np.sin(np.arange(trial.recording.n) / 90.0)
+    channel = position_channel(
+        [replace(trial, recording=replace(trial.recording, position=trial.recording.position + slow))], SIGMA
+    )
+    rules = SearchRules(threads=2, beam=1, rounds=4, polish=2, paired=4, screened=3, forms=1, enough_share=0.0)
+    found = Searcher(channel, Plant(DESIGN), Scales(), rules).run()
+    two = min(f.mse for f in found.fits if len(f.names) == 2)
+    assert 1.5 < two < 1.0 + rules.scant * (found.none.mse - 1.0)
+    assert 3 not in {len(f.names) for f in found.fits}
+    bold = Searcher(channel, Plant(DESIGN), Scales(), replace(rules, scant=0.0)).run().fits
+    assert 3 in {len(f.names) for f in bold}

@@ -44,6 +44,7 @@ class SearchRules:
         0.5  # resting reading's share of the noise, below which something may have drifted between repeats
     )
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
+    scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,8 +105,7 @@ class Searcher:
             if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
                 found += self._drifting(level) if size == 2 else []
                 break
-            # Of three causes that explain all, the best two explain two thirds, or more.
-            if size > 2 and best.mse - 1.0 > self.rules.hopeless * (retuned.mse - 1.0):
+            if size > 2 and self._idle(level, none, retuned):
                 break
             level = self._extended(level, size)
             found += level
@@ -113,6 +113,13 @@ class Searcher:
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
         return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
+
+    def _idle(self, pairs: Sequence[Fit], none: Fit, retuned: Fit) -> bool:
+        """Whether a third cause is not worth looking for."""
+        # Of three causes that explain all, the best two explain two thirds, or more.
+        if min(f.mse for f in pairs) - 1.0 > self.rules.hopeless * (retuned.mse - 1.0):
+            return True
+        return self._likely(pairs)[0].mse - 1.0 < self.rules.scant * (none.mse - 1.0)
 
     def _singles(self) -> list[Fit]:
         causes = number_causes(self.channel) + effect_causes(self.channel, self.base)
