@@ -17,6 +17,7 @@ from twin.choose.claims import best_forms, hollow, same_claim, size_of, some_of_
 from twin.choose.pairs import promising_pairs
 from twin.choose.score import Yardstick, make_yardstick
 from twin.choose.screen import make_screen, prospects
+from twin.choose.slips import several_slips
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -40,9 +41,7 @@ class SearchRules:
     forms: int = 3  # each in so many forms at the most
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
-    restless: float = (
-        0.5  # resting reading's share of the noise, below which something may have drifted between repeats
-    )
+    restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
@@ -86,9 +85,7 @@ class Searcher:
     scales: Scales
     rules: SearchRules = field(default_factory=SearchRules)
     progress: Progress = lambda _what, _share: None
-    resting: float = (
-        1.0  # mean squared error of a reading at rest: below 1 where the noise was measured between repeats
-    )
+    resting: float = 1.0  # mean squared error of a reading at rest: below 1 where the noise is that of repeats
     origins: list[Fit] = field(default_factory=list)  # hypotheses without a cause, from where pairs are looked for
     tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
 
@@ -97,8 +94,9 @@ class Searcher:
         none = fit(self.channel, make_space(self.base, (), (), self.scales), [np.zeros(0)])
         space = make_space(self.base, (), self.channel.numbers, self.scales, ACCUSED_SPREAD)
         retuned = fit(self.channel, space, starts_of(space), rounds=20)
-        found = self._singles()
-        level = list(found)
+        level = self._singles()
+        slips = number_causes(self.channel)
+        found = [*level, *several_slips(slips, none, retuned, self._fit_from, self.rules.scant)]
         self.origins[:] = [none, retuned]
         for size in range(2, self.rules.most + 1):
             best = min(level, key=lambda f: f.mse, default=none)

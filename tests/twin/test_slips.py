@@ -1,0 +1,40 @@
+"""A design that is off in several numbers is told from a valve with an effect."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from twin.catalog import effect
+from twin.plant import Inserted, Plant
+
+OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14)
+EVERYTHING = {"deadband", "offset", "compliance", "tau", "rate_limit"}
+
+
+@pytest.mark.parametrize(
+    ("design", "wrong"),
+    [
+        (OFF, EVERYTHING),
+        (replace(OFF, rate_limit=DesignModel().rate_limit), EVERYTHING - {"rate_limit"}),
+        (replace(DesignModel(), tau_s=2.2, compliance=0.2, rate_limit=0.14), {"tau", "compliance", "rate_limit"}),
+    ],
+)
+def test_the_wrong_numbers_are_named_and_no_effect(design: DesignModel, wrong: set[str]) -> None:
+    _, judgement = judged(a_record(Plant(DesignModel())), design)
+    assert judgement.verdict == "parameter"
+    assert {c.name for c in judgement.causes} == {f"parameter:{n}" for n in wrong}
+
+
+def test_an_effect_is_not_put_down_to_the_numbers() -> None:
+    lagged = Plant(DesignModel(), (Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (0.5,)),))
+    _, judgement = judged(a_record(lagged), DesignModel())
+    assert [c.name for c in judgement.causes] == ["sensor_lag"]
+
+
+def test_a_design_without_a_gap_is_not_taken_apart() -> None:
+    result, _ = judged(a_record(Plant(DesignModel())), DesignModel())
+    assert all(len(f.names) < 3 for d in result.decisions for f in d.findings.fits)
