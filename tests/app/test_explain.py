@@ -35,7 +35,7 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["explain", "creep", "--json"]) == 0
     facts = json.loads(capsys.readouterr().out)
     assert facts["stage"] == "actuator"
-    assert set(facts["forms"]) == {"one_tail", "two_tails", "force_tail"}
+    assert set(facts["forms"]) == {form.name for form in effect("creep").forms}
     assert facts["experiments"][0]["beyond_retuning_percent_of_travel"] > 0.5
 
 
