@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli import run
-from twin.catalog import effects
+from twin.catalog import effect, effects
 
 
 def test_list_names_all(capsys: pytest.CaptureFixture[str]) -> None:
