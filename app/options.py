@@ -25,8 +25,8 @@ class BenchWords(TypedDict):
     real_time: bool
 
 
-def profile_of(profile: str | Profile | None, physics: str | None) -> Profile:
-    """The profile that is meant; the pilot positioner has its own. Raises: `BadInput`."""
+def profile_of(profile: str | Path | Profile | None, physics: str | None = None) -> Profile:
+    """The profile that is meant; without a name the pilot positioner has its own. Raises: `BadInput`."""
     from hal.profile import Profile, load_profile
 
     if isinstance(profile, Profile):

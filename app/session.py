@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from app.options import profile_of
+
 if TYPE_CHECKING:
     from hal.clock import Clock
     from hal.profile import Profile
@@ -79,9 +81,8 @@ def open_bench(
     Raises: `BadInput`, `PortFault`, `WireFault`, `SafetyTrip`.
     """
     from hal.errors import BadInput
-    from hal.profile import Profile, load_profile
 
-    found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
+    found = profile_of(profile, physics)
     if port is not None:
         if physics or options or real_time or effects or sealed:
             raise BadInput(

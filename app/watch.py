@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from app.options import profile_of
+
 if TYPE_CHECKING:
     from hal.clock import Clock
     from hal.modbus_bench import ModbusBench
@@ -33,10 +35,9 @@ def open_to_look(
     from hal.clock import RealClock, SteppedClock
     from hal.errors import BadInput
     from hal.modbus_bench import ModbusBench
-    from hal.profile import Profile, load_profile
     from hal.reopen import Reopening
 
-    found = profile if isinstance(profile, Profile) else load_profile(profile or "virtual")
+    found = profile_of(profile, physics)
     if port is not None:
         if physics or effects:
             raise BadInput("--physics and --effect belong to the virtual valve; leave them out with --port")

@@ -81,7 +81,10 @@ def check_bench(plan: Plan, unit: str, low: float, high: float, info: BenchInfo)
     Raises: `BadInput`.
     """
     if unit != info.command_unit:
-        raise BadInput(f"the experiment commands {unit}, bench '{info.name}' takes {info.command_unit}; set its unit")
+        raise BadInput(
+            f"the commands are in {unit}, bench '{info.name}' takes {info.command_unit}; "
+            f"choose a bench that takes {unit}, or set the experiment's unit"
+        )
     if low < info.command_min or high > info.command_max:
         raise BadInput(
             f"the experiment commands {low:g} to {high:g} {unit}, "

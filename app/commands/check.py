@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from app.options import BenchWords, bench_options, profile_of
+from app.options import BenchWords, bench_options
 
 if TYPE_CHECKING:
     from app.bench_check import Finding
@@ -35,7 +35,6 @@ def command(
     from app.watch import open_to_look
     from hal.errors import JobFailed
 
-    words["profile"] = profile_of(words["profile"], words["physics"])
     watched: BenchWords = {**words, "real_time": True}
     with open_to_look(**watched) as (bench, _):
         findings = look(bench, period_s)

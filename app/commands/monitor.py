@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Unpack
 
 import click
 
-from app.options import BenchWords, bench_options, profile_of
+from app.options import BenchWords, bench_options
 
 if TYPE_CHECKING:
     from hal.clock import Clock
@@ -40,7 +40,6 @@ def command(
     from hal.errors import BadInput
     from hal.signals import stop_signals
 
-    words["profile"] = profile_of(words["profile"], words["physics"])
     words["real_time"] |= count is None
     with stop_signals() as stop, open_to_look(**words) as (bench, clock):
         unit, least_s = bench.info.command_unit, bench.info.min_period_s

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from app.options import bench_options, record_options, sealed_option
+from app.options import bench_options, profile_of, record_options, sealed_option
 from app.session import open_bench
 
 if TYPE_CHECKING:
@@ -71,12 +71,11 @@ def command(
     from control.design import DesignModel, load_design
     from control.plan import plan_targets
     from hal.errors import BadInput
-    from hal.profile import load_profile
 
     if list_them:
         _list(as_json)
         return
-    found = load_profile(bench["profile"] or "virtual")
+    found = profile_of(bench["profile"], bench["physics"])
     if resume is not None:
         wanted = _resumed(resume, found.travel_in)
     elif controller is None or targets is None:

@@ -127,6 +127,7 @@ def test_a_dry_run_touches_nothing(tmp_path: Path, capsys: pytest.CaptureFixture
         (["--controller", "p", "--targets", "0.1", "--set", "kd=1"], "no setting 'kd'"),
         (["--controller", "p", "--targets", "0.1", "--design", "absent.toml"], "absent.toml"),
         (["--controller", "p", "--targets", "0.1", "--profile", "positioner"], "takes percent"),
+        (["--controller", "p", "--targets", "0.1", "--physics", "positioner"], "takes percent"),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pytest
+
+from hal import vigil as watch
 from hal.vigil import Vigil
 
 
@@ -24,3 +27,17 @@ def test_vigils_in_vain_become_rare_and_one_that_pays_brings_them_back() -> None
     assert len(kept(10_000, b"")) < 50
     assert len(kept(300, b"x")) > 40
     assert kept(5, b"x") == [0, 1, 2, 3, 4]
+
+
+def test_each_look_in_vain_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A worker of the kernel carries the bytes, and needs the processor for it."""
+    happened: list[str] = []
+    monkeypatch.setattr(watch, "_give_way", lambda: happened.append("way"))
+    answers = iter([b"", b"", b"one"])
+
+    def look() -> bytes:
+        happened.append("look")
+        return next(answers)
+
+    assert Vigil().keep(look) == b"one"
+    assert happened == ["look", "way", "look", "way", "look"]
