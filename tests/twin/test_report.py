@@ -13,8 +13,9 @@ import pytest
 from tests.twin.report_example import diagnosis, series
 from twin.diagnosis import Bin, Diagnosis, Gap, Share
 from twin.report.content import columns, gap_marks, share_bars
+from twin.report.figures import planes
 from twin.report.page import render, write_report
-from twin.report.series import Series, busiest_window, thin
+from twin.report.series import Series, busiest_window, thin, thin_together
 from twin.report.words import number, percent
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
@@ -118,6 +119,23 @@ def test_bars_show_masking_and_columns_their_scale() -> None:
     assert columns(None) == []
     marks = gap_marks(Gap(4.0, 3.0, 0.2, 0.1, None))
     assert [mark.place for mark in marks] == sorted(mark.place for mark in marks)
+
+
+def test_a_fast_stroke_is_drawn_whole() -> None:
+    n = 100_000
+    driver = np.where(np.arange(n) % 5000 < 2500, 4.0, 13.0)
+    driver[2500:2600] = np.linspace(4.0, 13.0, 100)  # far fewer rows than are left out beside it
+    noise = np.random.default_rng(1).normal(0.0, 1e-4, n)
+    rows = thin_together((driver, driver / 10.0 + noise), 2000)
+    assert rows.size < n / 10
+    assert set(range(2500, 2600)) <= set(rows.tolist())
+
+
+def test_in_the_plane_models_are_drawn_on_the_rows_of_what_was_measured() -> None:
+    figure = planes.__wrapped__(series(2000))
+    lines = [line for axes in figure.axes for line in axes.lines]
+    assert len(lines) == 4
+    assert all(np.array_equal(line.get_xdata(), lines[0].get_xdata(), equal_nan=True) for line in lines)
 
 
 def test_thinning_keeps_extremes_and_windows_stay_in_one_record(shown: Series) -> None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.report.series import Series, busiest_window, thin
+from twin.report.series import Series, busiest_window, thin, thin_together
 from twin.report.style import AFTER, BEFORE, FLOOR, HELDOUT, INK, MEASURED, MUTED, RETUNED, drawn, new_figure, tidy
 
 if TYPE_CHECKING:
@@ -71,13 +71,14 @@ def planes(series: Series) -> Figure:
     driver = series.command if series.pressure is None else series.pressure
     name = "command" if series.pressure is None else "pressure"
     driver = np.where(series.starts, np.nan, driver)
-    measured = series.percent(series.position)
+    measured, before, after = (series.percent(v) for v in (series.position, series.before, series.after))
+    rows = thin_together((driver, measured, before, after), 2 * _POINTS)
     for axes, model, colour, label in (
-        (both[0], series.before, BEFORE, "design model"),
-        (both[1], series.after, AFTER, "updated model"),
+        (both[0], before, BEFORE, "design model"),
+        (both[1], after, AFTER, "updated model"),
     ):
-        _path(axes, driver, measured, MEASURED, "measured", 2.4, 0.33)
-        _path(axes, driver, series.percent(model), colour, label, 0.9, 0.9)
+        axes.plot(driver[rows], measured[rows], color=MEASURED, label="measured", linewidth=2.4, alpha=0.33)
+        axes.plot(driver[rows], model[rows], color=colour, label=label, linewidth=0.9, alpha=0.9)
         tidy(axes, f"{name} [{series.pressure_unit}]", "position [% of travel]" if axes is both[0] else "")
         _legend(axes)
     return figure
@@ -146,12 +147,6 @@ def _line(
     rows = np.union1d(thin(y, _POINTS), np.flatnonzero(np.isnan(x))[:_POINTS])
     style = (0, (4, 2)) if dashed else "-"
     axes.plot(x[rows], y[rows], color=colour, label=label or None, linewidth=width, alpha=alpha, linestyle=style)
-
-
-def _path(axes: Axes, x: FloatArray, y: FloatArray, colour: str, label: str, width: float, alpha: float) -> None:
-    """A line in the plane, thinned along both coordinates."""
-    rows = np.union1d(np.union1d(thin(x, 2 * _POINTS), thin(y, 2 * _POINTS)), np.flatnonzero(np.isnan(x))[:_POINTS])
-    axes.plot(x[rows], y[rows], color=colour, label=label, linewidth=width, alpha=alpha)
 
 
 def _shade_heldout(axes: Axes, series: Series, time: FloatArray) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,8 @@ import numpy.typing as npt
 from logs.recording import FloatArray
 
 IntArray = npt.NDArray[np.int64]
+#: Share of a line's whole range, within one row, from which a step is drawn whatever is left out beside it.
+_FAST = 0.005
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +75,20 @@ def thin(values: FloatArray, points: int) -> IntArray:
     first = np.arange(count) * width
     rows = np.concatenate([first, first + low, first + high, first + width - 1])
     return np.unique(np.clip(rows, 0, n - 1))
+
+
+def thin_together(lines: Sequence[FloatArray], points: int) -> IntArray:
+    """Rows that keep the look of lines that are drawn over each other: the extremes of each, and where one moves fast.
+
+    On rows of its own each line would cut other corners, and lines that agree would seem to differ.
+    """
+    kept = [thin(values, points) for values in lines]
+    for values in lines:
+        known = values[np.isfinite(values)]
+        step = np.abs(np.diff(values)) > _FAST * (np.ptp(known) if known.size else 0.0)
+        fast = np.flatnonzero(np.append(step, False) | np.insert(step, 0, False))
+        kept += [fast[:: -(-fast.size // points) or 1], np.flatnonzero(np.isnan(values))[:points]]
+    return np.unique(np.concatenate(kept))
 
 
 def busiest_window(series: Series, rows: int) -> slice:
