@@ -11,7 +11,7 @@ from hal.errors import BadInput
 from logs.plane import Plane
 from logs.recording import FloatArray
 from twin.diagnosis import Diagnosis
-from twin.report.series import IntArray, Series, thin
+from twin.report.series import IntArray, Series, thin, thin_together
 from twin.report.story import story
 from twin.where.regime import REGIMES, classify
 
@@ -155,8 +155,10 @@ def _send_plane(stream: rr.RecordingStream, plane: Plane, series: Series, time: 
         ("design", BEFORE, series.before, 0.7, 1.0),
         ("updated", AFTER, series.after, 0.7, 2.0),
     )
-    for label, colour, values, width, order in loops:
-        strips = _strips(driver, series.percent(values), series)
+    lines = [driver, *(series.percent(values) for _, _, values, _, _ in loops)]
+    rows = thin_together(lines, _PLANE_POINTS)
+    for (label, colour, _, width, order), percent in zip(loops, lines[1:], strict=True):
+        strips = _strips(driver, percent, rows, series)
         if strips:
             radius = rr.Radius.ui_points(width)
             loop = rr.LineStrips2D(strips, colors=[colour] * len(strips), radii=radius, draw_order=order)
@@ -177,9 +179,8 @@ def _send_plane(stream: rr.RecordingStream, plane: Plane, series: Series, time: 
     stream.send_columns(f"{plane.root}/now", indexes=index, columns=now)
 
 
-def _strips(x: FloatArray, y: FloatArray, series: Series) -> list[FloatArray]:
-    """The path as strips without gaps: cut at missing values and between recordings."""
-    rows = np.union1d(thin(x, _PLANE_POINTS), thin(y, _PLANE_POINTS))
+def _strips(x: FloatArray, y: FloatArray, rows: IntArray, series: Series) -> list[FloatArray]:
+    """The path through those rows as strips without gaps: cut at missing values and between recordings."""
     path = np.column_stack([x, y])[rows]
     known = np.isfinite(path).all(axis=1)
     part = np.cumsum(~known) + np.cumsum(series.starts)[rows]

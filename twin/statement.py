@@ -28,7 +28,7 @@ def statement(diagnosis: Diagnosis) -> str:
         )
     names = " and ".join(_named(cause) for cause in diagnosis.causes)
     closed = g.reducible_closed
-    share = f", which closes {100.0 * closed.value:.0f} % of what noise does not account for" if closed else ""
+    share = f", which closes {100.0 * closed.value:.3g} % of what noise does not account for" if closed else ""
     what = "A design number is off" if diagnosis.verdict == "parameter" else "The design leaves something out"
     return (
         f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "

@@ -116,6 +116,8 @@ def test_bars_show_masking_and_columns_their_scale() -> None:
     shown = columns((Bin(0.0, 0.5, Share(0.4, (0.3, 0.5))), Bin(0.5, 1.0, Share(0.6, (0.5, 0.8)))), 100.0)
     assert shown[1].label == "50"
     assert shown[1].height == pytest.approx(75.0)
+    assert columns((Bin(-0.0014, 2.7, Share(1.0, (0.9, 1.0))),))[0].label == "0"
+    assert columns((Bin(0.002, 0.004, Share(1.0, (0.9, 1.0))),))[0].label == "0.0020"
     assert columns(None) == []
     marks = gap_marks(Gap(4.0, 3.0, 0.2, 0.1, None))
     assert [mark.place for mark in marks] == sorted(mark.place for mark in marks)

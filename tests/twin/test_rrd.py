@@ -39,6 +39,20 @@ def test_file_tells_the_story_over_time(tmp_path: Path, monkeypatch: pytest.Monk
     assert not list(tmp_path.glob("*.partial"))
 
 
+def test_loops_in_the_plane_share_their_rows(tmp_path: Path) -> None:
+    from rerun.chunk import RrdReader
+
+    shown = series(12_000)
+    reader = RrdReader(write_rrd(diagnosis(shown), shown, tmp_path / "long.rrd"))
+    drawn: dict[str, list[float]] = {}
+    for chunk in reader.stream(store=reader.recordings()[0]):
+        if "/plane/loop/" in chunk.entity_path:
+            strips = chunk.to_record_batch().column("LineStrips2D:strips").to_pylist()[0]
+            drawn[chunk.entity_path] = [point[0] for strip in strips for point in strip]
+    measured, design, updated = (drawn[f"/plane/loop/{name}"] for name in ("measured", "design", "updated"))
+    assert design == updated == measured
+
+
 def test_bare_series_and_impossible_places(tmp_path: Path) -> None:
     shown = series(60)
     position = shown.position.copy()

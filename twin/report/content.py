@@ -83,15 +83,20 @@ def columns(bins: tuple[Bin, ...] | None, scale: float = 1.0) -> list[Column]:
     top = max(max(b.share.ci95[1], b.share.value) for b in bins) or 1.0
     return [
         Column(
-            label=number(scale * b.low, 2),
-            text=f"{number(scale * b.low)} to {number(scale * b.high)}: {percent(b.share.value, 1)} "
-            f"({percent(b.share.ci95[0], 1)} to {percent(b.share.ci95[1], 1)})",
+            label=number(_edge(b.low, b) * scale, 2),
+            text=f"{number(_edge(b.low, b) * scale)} to {number(_edge(b.high, b) * scale)}: "
+            f"{percent(b.share.value, 1)} ({percent(b.share.ci95[0], 1)} to {percent(b.share.ci95[1], 1)})",
             height=100.0 * max(b.share.value, 0.0) / top,
             low=100.0 * max(b.share.ci95[0], 0.0) / top,
             high=100.0 * max(b.share.ci95[1], 0.0) / top,
         )
         for b in bins
     ]
+
+
+def _edge(value: float, within: Bin) -> float:
+    """The edge of a bin; what is nothing beside the bin's width, like a reading's noise around zero, is zero."""
+    return 0.0 if abs(value) < 0.01 * (within.high - within.low) else value
 
 
 def gap_marks(gap: Gap) -> list[Mark]:
