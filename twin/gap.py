@@ -39,7 +39,7 @@ DOUBTFUL = 1.6
 SLIGHT = 1.3
 #: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
 #: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
-#: An erratic cause (its jumps follow no model for long) may leave more.
+#: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
 
 
@@ -137,13 +137,16 @@ def _doubted(judgement: Judgement) -> bool:
 
 
 def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool) -> bool:
-    """Whether the causes leave too much of a clear gap where no fit has seen it."""
+    """Whether the causes leave too much of the gap where no fit has seen it."""
+    left, gap = after**2 - floor**2, before**2 - floor**2
+    if before <= CLEAR * floor:
+        return before > SLIGHT * floor and left > ERRATIC * gap
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
     several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
     many = any(len(c.parameters) > FREE for c in causes)
     share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
-    return before > CLEAR * floor and after**2 - floor**2 > share * (before**2 - floor**2)
+    return left > share * gap
 
 
 def _only_seen(judgement: Judgement, sensing: Sensing) -> Judgement:

@@ -89,7 +89,7 @@ def _judge(
     case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress, floor: float = 1.0
 ) -> Decision:
     findings = Searcher(channel, case.base, case.scales, search, progress, _resting(case, channel)).run()
-    return leaning(decide(findings, rules, floor), case.scales)
+    return leaning(decide(findings, rules, floor), case.scales, rules)
 
 
 def _resting(case: Case, channel: Channel) -> float:

@@ -93,12 +93,16 @@ def rest_of(findings: Findings, fit: Fit, floor: float) -> float:
 
 
 def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
-    """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins."""
+    """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins.
+
+    Several numbers are no plainer than one effect: they have to have the better evidence too.
+    """
     if size_of(fit) > 1:
         return fit
     slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
+    near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
         return fit
     least = min(near, key=lambda f: (len(f.names), -findings.score(f)))

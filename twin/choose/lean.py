@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from twin.choose.claims import same_claim
-from twin.choose.decide import Decision
+from twin.choose.claims import same_claim, size_of
+from twin.choose.decide import Decision, DecisionRules
 from twin.effect import Scales
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
@@ -23,8 +23,11 @@ _RIGHT = 1.5
 _ROUNDS = 8
 
 
-def leaning(decision: Decision, scales: Scales) -> Decision:
-    """The decision with the number accused that its effects cannot do without."""
+def leaning(decision: Decision, scales: Scales, rules: DecisionRules) -> Decision:
+    """The decision with the number accused that its effects cannot do without.
+
+    Where as many causes, that lean on no number, explain the gap as well, these are accepted instead.
+    """
     accepted = decision.accepted
     if not decision.explained or all(c.effect is None for c in accepted.space.causes):
         return decision
@@ -33,10 +36,26 @@ def leaning(decision: Decision, scales: Scales) -> Decision:
     needed = _Leaning(decision, scales).needed()
     if needed is None:
         return decision
+    upright = _upright(decision, scales, rules)
+    if upright is not None:
+        return upright
     causes = (*accepted.space.causes, needed)
     accused = _fitted(decision, causes, accepted.space.numbers, scales)
     findings = replace(decision.findings, fits=(*decision.findings.fits, accused))
     return replace(decision, findings=findings, accepted=accused, rest=decision.rest_of(accused))
+
+
+def _upright(decision: Decision, scales: Scales, rules: DecisionRules) -> Decision | None:
+    """The decision for other causes, as many and as likely, that need no number; None where there are none."""
+    findings, accepted = decision.findings, decision.accepted
+    least = findings.score(accepted) - rules.evidence
+    rivals = [f for f in findings.fits if size_of(f) == size_of(accepted) and set(f.names) != set(accepted.names)]
+    near = [f for f in rivals if f.mse <= accepted.mse + rules.plain and findings.score(f) > least]
+    for rival in sorted(near, key=findings.score, reverse=True):
+        other = replace(decision, accepted=rival, rest=decision.rest_of(rival))
+        if _Leaning(other, scales).needed() is None:
+            return other
+    return None
 
 
 @dataclass(frozen=True, slots=True)

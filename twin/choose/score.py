@@ -21,6 +21,7 @@ from twin.fit.fitting import Fit
 
 _ORDER = 24
 _NU = 5.0
+_FURTHER_NUMBER = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,4 +109,7 @@ def _log_volume(fit: Fit, phi: float) -> float:
 
 
 def _log_odds(fit: Fit) -> float:
-    return float(sum(np.log(c.effect.odds) for c in fit.space.causes if c.effect is not None))
+    """Prior log-odds of the causes: each effect has its own, and where one number is wrong a further one is rare."""
+    numbers = sum(c.effect is None for c in fit.space.causes)
+    effects = sum(np.log(c.effect.odds) for c in fit.space.causes if c.effect is not None)
+    return float(effects + np.log(_FURTHER_NUMBER) * max(numbers - 1, 0))

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.choose.claims import size_of
+from twin.choose.claims import hollow, size_of
 from twin.choose.decide import Decision
 from twin.fit.fitting import Fit
 
@@ -57,14 +57,15 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
 
 
 def _comparable(decision: Decision) -> list[Fit]:
-    """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed.
+    """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed, and
+    none whose effect has no size, since it is its numbers that explain the gap.
 
     Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far.
     """
     accepted = decision.accepted
     size = size_of(accepted)
     everything = (decision.findings.none, *decision.findings.fits)
-    fits = [f for f in everything if size_of(f) <= size and f is not accepted]
+    fits = [f for f in everything if size_of(f) <= size and f is not accepted and not hollow(f, decision.findings.phi)]
     fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
     fits = [f for f in fits if not _leans_on(f, accepted)]
     return [*fits, accepted]
