@@ -30,17 +30,17 @@ from twin.partial import Interrupted, Stage, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
-from twin.repeatable import Disturbance, disturbance
+from twin.repeatable import Disturbance
 from twin.rounding import rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
 from twin.statement import statement
-from twin.swing import swing_note, swing_of_position
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
 from twin.unexplained import residual_signature
 from twin.verdict import Judgement
+from twin.wander import unrest
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
 
@@ -114,11 +114,11 @@ def diagnose(
         retuned = retuned_fit(look)
         everything = on_everything(case, result)
         where = whereabouts(case, everything, settings.seed)
-        ep_share = where.stage["ep"].value if where.stage else 0.0
-        loud, swing = disturbance(case, everything.trials, settings.margin.position), swing_of_position(everything)
-        notes += [swing_note(swing, case.scales.position_unit)] if swing else []
-        disturbed = loud is not None or swing is not None
-        hearing = Hearing(look, retuned, sensing, ep_share, settings.weights, disturbed)
+        itself = unrest(case, everything, settings.margin.position)
+        notes += itself.notes(case)
+        case = itself.heard(case)
+        converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
+        hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed)
         judgement = hearing.judgement(result)
         progress("held-out gap", 0.0)
         needed, judgement, parts = hearing.held_out(result, judgement, stage.told(progress))
@@ -128,7 +128,7 @@ def diagnose(
         parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, case.sigma_p is not None)
         final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
         diagnosis = _assembled(
-            case, result, judgement, where, parts, _floor(case, parts, judgement, loud), settings, notes
+            case, result, judgement, where, parts, _floor(case, parts, judgement, itself.loud), settings, notes
         )
         proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
         loop = closed_loop(recordings, final)
@@ -139,7 +139,7 @@ def diagnose(
     model, units = _model(Plant(final.design, tuple(i for i in final.inserted if i not in late)), case)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
     if judgement.verdict == "unexplained":
-        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, loud, swing))
+        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, itself.loud, itself.swing))
     return Outcome(diagnosis, tuple(recordings), model, units, before, again, after, parts, everything, proposal.file)
 
 

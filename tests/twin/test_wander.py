@@ -1,0 +1,39 @@
+"""A pressure that wanders by itself is noise where it is small and nothing tells better, and a gap where it matters."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from logs.recording import Recording
+from tests.twin.trials import DESIGN, staircase, trial_of
+from twin.diagnose import diagnose
+from twin.plant import Plant, pressure_response, reading_response, stem_response
+
+
+def wandering(size_psi: float) -> Recording:
+    """A healthy valve whose pressure drifts about by itself, RMS `size_psi`, within some ten seconds."""
+    command = staircase()
+    trial, _ = trial_of(Plant(DESIGN), command)
+    r, grid, dice = trial.recording, trial.grid, np.random.default_rng(8)
+    c = Plant(DESIGN).coefficients(float(r.time_s[-1]))
+    slow = gaussian_filter1d(dice.normal(0.0, 1.0, r.n), 60.0)
+    settled = pressure_response(c, grid, command, float(command[0]))
+    pressure = settled + size_psi * np.interp(
+        np.linspace(0.0, r.n - 1.0, settled.size), np.arange(r.n), slow / slow.std()
+    )
+    position = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))
+    read = pressure[grid.offsets] + dice.normal(0.0, 5e-3, r.n)
+    return replace(r, pressure=read, position=position + dice.normal(0.0, 6e-4, r.n))
+
+
+@pytest.mark.parametrize(
+    ("size_psi", "verdict", "said"), [(0.004, "no_gap", True), (0.008, "no_gap", True), (0.02, "unexplained", False)]
+)
+def test_what_wanders_is_noise_while_it_is_small(size_psi: float, verdict: str, said: bool) -> None:
+    found = diagnose([wandering(size_psi)], DESIGN).diagnosis
+    assert found.verdict == verdict
+    assert any("wandering" in note.handled for note in found.data_quality) is said
