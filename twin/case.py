@@ -78,11 +78,12 @@ def make_case(
     noise: NoiseModel | None = None,
     step: float = 0.0,
     held: bool = False,
+    doubt: float = Scales().doubt,
 ) -> Case:
     """Prepares recordings against a design; `inserted` are effects that the design already has.
 
     `step` is the resolution of the position reading: still readings on one step show no noise, and have some. `held`:
-    readings are seen to be refreshed more slowly than they are polled.
+    readings are seen to be refreshed more slowly than they are polled. `doubt`: see `Scales`.
     """
     noise = noise or estimate_noise(recordings)
     span = design.travel / design.compliance
@@ -91,6 +92,7 @@ def make_case(
         position=design.travel / _REFERENCE_TRAVEL_IN,
         pressure_unit=design.pressure_unit,
         position_unit=design.position_unit,
+        doubt=doubt,
     )
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))

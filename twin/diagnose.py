@@ -19,6 +19,7 @@ from twin.closed_loop import closed_loop
 from twin.closure import gap, rms
 from twin.detectable import detection_limits
 from twin.diagnosis import Diagnosis, Where
+from twin.effect import Scales
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, retuning_pays, upheld
@@ -51,7 +52,8 @@ Progress = Callable[[str, float], None]
 class Settings:
     """Everything that can be chosen about a diagnosis; the defaults are the calibrated ones.
 
-    With a `margin` a cause must explain more than the margin does.
+    With a `margin` a cause must explain more than the margin does. `doubt`: relative standard deviation of the design's
+    numbers, wide for those that were identified from the very records.
     """
 
     search: SearchRules = field(default_factory=SearchRules)
@@ -59,6 +61,7 @@ class Settings:
     weights: Weights = field(default_factory=Weights)
     seed: int = 0
     margin: Margin = field(default_factory=Margin)
+    doubt: float = Scales().doubt
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,7 +101,16 @@ def diagnose(
     progress("noise and events", 1.0)
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     inserted = (*inserted, *rounding_down(recordings, Plant(design, tuple(inserted)), sensing))
-    case = make_case(recordings, design, inserted, sensing.bad_rows, noise, sensing.step, _held(recordings, sensing))
+    case = make_case(
+        recordings,
+        design,
+        inserted,
+        sensing.bad_rows,
+        noise,
+        sensing.step,
+        _held(recordings, sensing),
+        settings.doubt,
+    )
     case, share = widened(case, settings.margin)
     settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, share)))
     late, late_notes = late_commands(look_at(case)[0])

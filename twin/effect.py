@@ -59,13 +59,17 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Scales:
-    """What turns the thesis's psi, in into a record's units: a percent bench has other magnitudes, the same physics."""
+    """What turns the thesis's psi, in into a record's units: a percent bench has other magnitudes, the same physics.
+
+    `doubt`: relative standard deviation of a design number that nobody accuses.
+    """
 
     pressure: float = 1.0
     position: float = 1.0
     time: float = 1.0
     pressure_unit: str = "psi"
     position_unit: str = "in"
+    doubt: float = 0.01
 
     def factor(self, kind: Kind) -> float:
         """Multiplier from reference units to record units."""

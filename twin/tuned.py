@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from control.design import DesignModel
+from control.identify_stops import travel_between_stops
 from logs.recording import Recording
 from twin.case import Case, make_case
-from twin.fit.channel import chain_channel
+from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.smooth import smoothed_pressure
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.noise.model import estimate_noise
 from twin.pieces import cut_at_holes
@@ -18,7 +21,10 @@ from twin.thin import look_at
 
 def retuned_fit(case: Case) -> Fit:
     """Only the design's own numbers, fitted to the whole chain."""
-    channel = chain_channel(case.trials, case.sigma_y)
+    return _fitted(case, chain_channel(case.trials, case.sigma_y))
+
+
+def _fitted(case: Case, channel: Channel) -> Fit:
     space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
     return fit(channel, space, starts_of(space), rounds=20)
 
@@ -27,10 +33,18 @@ def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignMode
     """`design`, in the recordings' units, with all its numbers fitted to them.
 
     What is identified stage by stage leaves the lag of a converter whose pressure nobody measured at its default; held
-    against such a design, the default itself would be found at fault.
+    against such a design, the default itself would be found at fault. Where the pressure was measured each stage gets
+    its numbers from its own signal, so that a fault of the valve does not bend the converter's; and where the record
+    rests at both stops they give the travel.
     """
     pieces, _ = cut_at_holes(recordings)
     noise = estimate_noise(pieces)
+    design = replace(design, travel=travel_between_stops(pieces, design) or design.travel)
     sensing = sense(pieces, noise, design.travel, design.rate_limit)
     look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.step))
-    return retuned_fit(look).plant.design
+    if look.sigma_p is None:
+        return retuned_fit(look).plant.design
+    first = _fitted(look, pressure_channel(look.trials, look.sigma_p))
+    known = replace(look, base=first.plant)
+    driven = tuple(t.with_pressure(smoothed_pressure(known.base, t, look.sigma_p)) for t in look.trials)
+    return _fitted(known, position_channel(driven, look.sigma_y)).plant.design

@@ -25,6 +25,10 @@ _WITHOUT_DESIGN = {
 }
 
 
+#: Relative standard deviation of numbers that were fitted to the record before its faults were known.
+_IDENTIFIED = 0.2
+
+
 @click.command()
 @click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--design", type=click.Path(path_type=Path), help="Design model file; without it the thesis's numbers.")
@@ -93,15 +97,21 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
-            outcome = diagnose(recordings, model, inserted_from(model), Settings(seed=seed), progress)
-            if origin == "identified from the record" and outcome.diagnosis.verdict == "parameter":
+            identified = origin == "identified from the record"
+            settings = Settings(seed=seed, doubt=_IDENTIFIED) if identified else Settings(seed=seed)
+            outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
+            if identified and _accuses_numbers(outcome):
                 # The numbers come from this very record: they cannot be off, they were only not found well enough.
-                outcome = diagnose(recordings, outcome.model, (), Settings(seed=seed), progress)
+                outcome = diagnose(recordings, replace(outcome.model, effects={}), (), settings, progress)
             write_outcome(outcome, out, progress)
     except Interrupted as stop:
         _leave(stop.diagnosis, model, out)
         raise
     return outcome
+
+
+def _accuses_numbers(outcome: Outcome) -> bool:
+    return any(cause.name.startswith("parameter:") for cause in outcome.diagnosis.causes)
 
 
 def _leave(diagnosis: Diagnosis, model: DesignModel, out: Path) -> None:

@@ -14,7 +14,7 @@ from twin.choose.claims import same_claim, size_of
 from twin.choose.decide import Decision, DecisionRules
 from twin.effect import Scales
 from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import Cause, make_space
+from twin.fit.space import SHIFTED, Cause, make_space
 
 #: Share of the gap that the effects leave without the numbers; and at least so many times the noise variance.
 _SHARE, _LEAST = 0.25, 0.5
@@ -26,10 +26,11 @@ _ROUNDS = 8
 def leaning(decision: Decision, scales: Scales, rules: DecisionRules) -> Decision:
     """The decision with the number accused that its effects cannot do without.
 
-    Where as many causes, that lean on no number, explain the gap as well, these are accepted instead.
+    Where as many causes, that lean on no number, explain the gap as well, these are accepted instead. Numbers that
+    nobody is sure of are not accused.
     """
     accepted = decision.accepted
-    if not decision.explained or all(c.effect is None for c in accepted.space.causes):
+    if scales.doubt > SHIFTED or not decision.explained or all(c.effect is None for c in accepted.space.causes):
         return decision
     if accepted.mse > _RIGHT * decision.floor:
         return decision

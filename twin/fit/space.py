@@ -18,8 +18,7 @@ from twin.effect import Effect, Form, Parameter, Scales
 from twin.fit.numbers import NUMBERS, nominal, reference, retuned
 from twin.plant import Inserted, Plant
 
-#: Relative spread of a design number that nobody accuses, and of one that stands accused.
-NUISANCE_SPREAD = 0.01
+#: Relative spread of a design number that stands accused.
 ACCUSED_SPREAD = 0.5
 #: ... and of one that an effect of the hypothesis gives another meaning.
 ABSORBED_SPREAD = 0.1
@@ -101,13 +100,19 @@ class Space:
 
 
 def make_space(
-    base: Plant, causes: Sequence[Cause], numbers: Sequence[str], scales: Scales, spread: float = NUISANCE_SPREAD
+    base: Plant, causes: Sequence[Cause], numbers: Sequence[str], scales: Scales, spread: float | None = None
 ) -> Space:
-    """The space of a hypothesis; `numbers` are the design numbers of the stage, accused or not."""
+    """The space of a hypothesis; `numbers` are the design numbers of the stage, accused or not.
+
+    `spread`: of those that are not; as `scales` doubt them where it is not given.
+    """
+    spread = scales.doubt if spread is None else spread
     accused = {c.name.removeprefix("parameter:") for c in causes if c.effect is None}
     absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
     kept = [n for n in numbers if n in accused or spread > 0.0]
-    spreads = {n: ACCUSED_SPREAD if n in accused else ABSORBED_SPREAD if n in absorbed else spread for n in kept}
+    spreads = {
+        n: ACCUSED_SPREAD if n in accused else max(ABSORBED_SPREAD, spread) if n in absorbed else spread for n in kept
+    }
     unknowns = [_number(base.design, n, spreads[n]) for n in kept]
     for cause in causes:
         if cause.form is not None:
