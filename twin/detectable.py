@@ -1,101 +1,196 @@
-"""What a record could have shown: per effect the smallest size that would have been accepted, or why none would.
+"""What a record could have shown: per cause the smallest size that would have been accepted, or why none would.
 
-The response to a small size is projected off the design numbers' responses (re-tuning would hide that part); what is
-left must reach the evidence and the gain that the decision asks for.
+The response to a size is projected off the design numbers' responses (re-tuning would hide that part); what is left
+must reach the evidence and the gain that the decision asks for. Responses need not be in proportion to the size (a
+delay inside a lag, a band that nothing leaves), so the size is walked towards where they suffice.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.case import Case
+from twin.catalog import effects as catalogued
 from twin.choose.decide import DecisionRules
 from twin.diagnosis import EffectTest
 from twin.effect import Effect, Form, Parameter, Scales
 from twin.fit.channel import Channel
 from twin.fit.least_squares import jacobian
+from twin.fit.numbers import nominal, reference, retuned, unit
 from twin.fit.space import make_space
 from twin.plant import Inserted, Plant
+
+_STEPS = 5
+#: A size is near enough when what it shows is within these bounds of what is needed.
+_NEAR = (0.8, 1.3)
+#: Share of a record's time that is the whole of it.
+_WHOLE = 0.9
+#: The largest relative error of a design number that is asked about.
+_WRONG = 0.5
+
+
+@dataclass(frozen=True, slots=True)
+class Detector:
+    """What a channel would have to be shown. `nuisance`: orthonormal responses of the design numbers, (n, numbers)."""
+
+    channel: Channel
+    base: Plant
+    scales: Scales
+    nuisance: FloatArray
+    plain: FloatArray
+    needed: float
+
+    def shown(self, plant: Plant, nuisance: FloatArray) -> float:
+        """The power that a changed plant's response keeps beside re-tuning, 1 = enough."""
+        change = self.channel.residuals(plant) - self.plain
+        change -= nuisance @ (nuisance.T @ change)
+        return float(change @ change) / self.needed
 
 
 def detection_limits(
     channels: Sequence[Channel], base: Plant, scales: Scales, effects: Sequence[Effect], rules: DecisionRules
 ) -> tuple[EffectTest, ...]:
-    """One line per effect, in the order given; effects of stages that no channel judges are not testable."""
-    lines = []
+    """One line per cause that acts on a trajectory, by name: effects, then numbers; other stages' are left out."""
+    lines, numbers = [], []
     for channel in channels:
-        nuisance = _nuisance(channel, base, scales)
+        basis = _nuisance(channel, base, scales)
+        needed = max(2.0 * rules.evidence, rules.gain * channel.rows)
+        detector = Detector(channel, base, scales, np.linalg.qr(basis)[0], channel.residuals(base), needed)
         for effect in effects:
             if effect.stage in channel.stages and effect.evidence == "trajectory":
-                lines.append(_best_form(channel, base, scales, effect, nuisance, rules))
-    return tuple(sorted(lines, key=lambda line: line.name))
+                lines.append(_best_form(detector, effect))
+        for k, name in enumerate(channel.numbers):
+            others = np.linalg.qr(np.delete(basis, k, axis=1))[0]
+            numbers.append(_of_number(detector, name, others))
+    return tuple(sorted(lines, key=lambda line: line.name) + sorted(numbers, key=lambda line: line.name))
+
+
+def unseen_in_windows(tests: Sequence[EffectTest], channel: Channel, case: Case) -> tuple[EffectTest, ...]:
+    """The tests without a claim about slow changes, where the channel looks at windows of a long record only."""
+    seen_s = sum(t.recording.duration_s for t in channel.trials)
+    if seen_s > _WHOLE * sum(r.duration_s for r in case.recordings):
+        return tuple(tests)
+    slow = {name for name, effect in catalogued().items() if effect.drifts}
+    why = "the record is so long that it is looked at in windows, and this goes on for longer than a window"
+    return tuple(EffectTest(t.name, False, why, t.parameter) if t.name in slow else t for t in tests)
 
 
 def _nuisance(channel: Channel, base: Plant, scales: Scales) -> FloatArray:
-    """Orthonormal basis of what re-tuning the design numbers can do, shape (n, numbers)."""
+    """What small changes of the design numbers do, shape (n, numbers)."""
     space = make_space(base, (), channel.numbers, scales)
     z = np.zeros(len(space.unknowns))
 
     def residuals(at: FloatArray) -> FloatArray:
         return channel.residuals(space.plant(at))
 
-    basis, _ = np.linalg.qr(jacobian(residuals, z, residuals(z), space.steps, space.upper))
-    return np.asarray(basis)
+    return np.asarray(jacobian(residuals, z, residuals(z), space.steps, space.upper))
 
 
-def _best_form(
-    channel: Channel, base: Plant, scales: Scales, effect: Effect, nuisance: FloatArray, rules: DecisionRules
-) -> EffectTest:
-    limits = [(_limit(channel, base, scales, effect, form, nuisance, rules), form) for form in effect.forms]
-    limit, form = min(limits, key=lambda pair: pair[0])
-    main = _main(form)
-    if main is None or not np.isfinite(limit):
+def _best_form(detector: Detector, effect: Effect) -> EffectTest:
+    """The form of an effect that shows first, as a share of its plausible range."""
+    found = [
+        (limit, form, main)
+        for form in effect.forms
+        if (main := _main(form)) is not None
+        for limit in [_form_limit(detector, effect, form, main)]
+    ]
+    limit, form, main = min(found, key=lambda one: one[0] / _reach(one[2]), default=(np.inf, None, None))
+    if main is None or form is None or limit == np.inf:
         return EffectTest(effect.name, False, "this record does not excite it")
-    factor = scales.factor(main.kind)
-    largest = max(abs(main.upper - main.neutral), abs(main.lower - main.neutral)) * factor
-    if limit > largest:
+    if limit > _reach(main):
         return EffectTest(effect.name, False, "even its largest plausible size would not have shown", main.name)
-    return EffectTest(effect.name, True, "", main.name, limit, scales.unit(main.kind))
+    value = (main.neutral + _side(main) * limit if main.neutral else limit) * detector.scales.factor(main.kind)
+    return EffectTest(effect.name, True, "", main.name, value, detector.scales.unit(main.kind), form.name)
 
 
-def _limit(
-    channel: Channel,
-    base: Plant,
-    scales: Scales,
-    effect: Effect,
-    form: Form,
-    nuisance: FloatArray,
-    rules: DecisionRules,
-) -> float:
-    """Smallest size in record units; infinite where the response is nil."""
-    main, present = _main(form), next((one for one in base.inserted if one.effect == effect.name), None)
-    if main is None or (present is not None and present.form.name != form.name):
+def _form_limit(detector: Detector, effect: Effect, form: Form, main: Parameter) -> float:
+    """Smallest distance from neutral that shows [reference units]; beyond the range, or infinite, where none does."""
+    base = detector.base
+    present = next((one for one in base.inserted if one.effect == effect.name), None)
+    if present is not None and present.form.name != form.name:
         return float("inf")
-    sizes = sorted(
-        form.parameters[0].starts if main is form.parameters[0] else main.starts, key=lambda s: abs(s - main.neutral)
-    )
-    plain = channel.residuals(base)
-    for size in sizes:
-        values = _sized(form, main, size, present, scales)
-        changed = channel.residuals(base.having([Inserted(effect.name, form, values)]))
-        change = changed - plain
-        change -= nuisance @ (nuisance.T @ change)
-        power = float(change @ change)
-        needed = max(2.0 * rules.evidence, rules.gain * channel.rows)
-        if power > 1e-6 * needed:
-            return abs(size - main.neutral) * scales.factor(main.kind) * float(np.sqrt(needed / power))
-    return float("inf")
+
+    def shown(size: float) -> float:
+        values = _sized(form, main, main.neutral + _side(main) * size, present, detector.scales)
+        return detector.shown(base.having([Inserted(effect.name, form, values)]), detector.nuisance)
+
+    first = min(abs(s - main.neutral) for s in main.starts if s != main.neutral)
+    return smallest_shown(shown, first, _reach(main))
+
+
+def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
+    design = detector.base.design
+    size = reference(design, name)
+
+    def shown(relative: float) -> float:
+        changed = retuned(design, {name: nominal(design, name) + relative * size})
+        return detector.shown(Plant(changed, detector.base.inserted), others)
+
+    limit = smallest_shown(shown, 0.01, _WRONG)
+    if limit > _WRONG:
+        return EffectTest(f"parameter:{name}", False, "this record does not excite it", name)
+    return EffectTest(f"parameter:{name}", True, "", name, limit * size, unit(design, name))
+
+
+def smallest_shown(shown: Callable[[float], float], first: float, largest: float) -> float:
+    """The smallest size with `shown(size)` about 1; above `largest` where it is not reached, infinite where nothing is.
+
+    From `first`, by the power law through the last two sizes; `shown` grows about with the square of a size.
+    """
+    size = min(first, largest)
+    low, high = (0.0, 0.0), (np.inf, np.inf)  # sizes that do not show, and that do
+    order, last = 2.0, (0.0, 0.0)
+    for _ in range(_STEPS):
+        power = shown(size)
+        if _NEAR[0] <= power <= _NEAR[1]:
+            return size
+        low, high = ((size, power), high) if power < 1.0 else (low, (size, power))
+        if last[1] > 0.0 and power > 0.0 and last[0] != size:
+            order = min(max(np.log(power / last[1]) / np.log(size / last[0]), 0.5), 4.0)
+        last = (size, power)
+        if low[0] >= largest:
+            break
+        guess = size * power ** (-1.0 / order) if power > 1e-12 else largest
+        size = _between(guess, low[0], high[0], largest)
+    if high[0] < np.inf:
+        return high[0]
+    return float("inf") if low[1] < 1e-6 else 2.0 * largest
+
+
+def _between(guess: float, low: float, high: float, largest: float) -> float:
+    """The guess, or the geometric middle where it lies outside of what is still open."""
+    top = min(high, largest)
+    if low < guess < top:
+        return guess
+    return float(np.sqrt(low * top)) if high < np.inf and low > 0.0 else 0.3 * top if high < np.inf else top
 
 
 def _sized(form: Form, main: Parameter, size: float, present: Inserted | None, scales: Scales) -> tuple[float, ...]:
-    """Values of the form at `size` of its main parameter; a form that the design has changes by as much."""
+    """Values of the form at `size` of its main parameter, its other sizes nil, its shape at the first start.
+
+    A form that the design has changes by as much.
+    """
     if present is None:
-        return tuple((size if p is main else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
+        rest = {p.name: p.neutral if p.size else p.starts[0] for p in form.parameters}
+        return tuple((rest | {main.name: size})[p.name] * scales.factor(p.kind) for p in form.parameters)
     change = (size - main.neutral) * scales.factor(main.kind)
     return tuple(v + change if p is main else v for p, v in zip(form.parameters, present.values, strict=True))
 
 
 def _main(form: Form) -> Parameter | None:
     return next((p for p in form.parameters if p.size), None)
+
+
+def _side(main: Parameter) -> float:
+    """Which way from neutral the nearest start lies."""
+    nearest = min((s for s in main.starts if s != main.neutral), key=lambda s: abs(s - main.neutral))
+    return 1.0 if nearest > main.neutral else -1.0
+
+
+def _reach(main: Parameter) -> float:
+    """The largest plausible distance from neutral on that side."""
+    return abs((main.upper if _side(main) > 0.0 else main.lower) - main.neutral)

@@ -17,7 +17,7 @@ from twin.choose.trim import trimmed
 from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
 from twin.closure import gap, rms
-from twin.detectable import detection_limits
+from twin.detectable import detection_limits, unseen_in_windows
 from twin.diagnosis import Diagnosis, Where
 from twin.effect import Scales
 from twin.fit.channel import predict_reading
@@ -33,7 +33,7 @@ from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
 from twin.repeatable import Disturbance
 from twin.rounding import rounding_down
-from twin.sensing import Sensing, noise_of_refreshed, sense
+from twin.sensing import Sensing, noise_of_refreshed, sense, smallest_seen
 from twin.stages import StageResult, judge
 from twin.statement import statement
 from twin.thin import look_at, on_everything
@@ -184,13 +184,9 @@ def _assembled(
     numbers = gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, settings.seed)
     causes = tuple(replace(c, heldout_gap_without=parts.without.get(c.name)) for c in judgement.causes)
     ranking = tuple(replace(r, heldout_gap=parts.alone.get(r.name)) for r in judgement.ranking)
-    limits = detection_limits(
-        [d.findings.channel for d in result.decisions],
-        case.base,
-        case.scales,
-        tuple(effects().values()),
-        settings.rules,
-    )
+    channels = [d.findings.channel for d in result.decisions]
+    limits = detection_limits(channels, case.base, case.scales, tuple(effects().values()), settings.rules)
+    limits = (*unseen_in_windows(limits, channels[-1], case), *smallest_seen(case.noise, case.scales, case.travel))
     quality = tuple(n for r in case.recordings for n in r.notes) + tuple(notes)
     diagnosis = Diagnosis(
         verdict=judgement.verdict,

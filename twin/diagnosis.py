@@ -103,7 +103,8 @@ class NextExperiment:
 
 @dataclass(frozen=True, slots=True)
 class EffectTest:
-    """What this record could show of one effect: `detection_limit` in `unit` of `parameter`, None if untestable."""
+    """What this record could show of one cause: `detection_limit` [`unit`] is a value of `parameter` in the `form` that
+    shows first, of a design number how far it is off; None if untestable."""
 
     name: str
     testable: bool
@@ -111,6 +112,7 @@ class EffectTest:
     parameter: str = ""
     detection_limit: float | None = None
     unit: str = ""
+    form: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -244,4 +246,5 @@ def _test(test: EffectTest) -> dict[str, object]:
         "parameter": test.parameter,
         "detection_limit": test.detection_limit,
         "unit": test.unit,
+        "form": test.form,
     }

@@ -14,7 +14,9 @@ from scipy.ndimage import median_filter
 
 from logs.recording import Recording
 from twin.catalog import effect
-from twin.diagnosis import Estimate
+from twin.diagnosis import EffectTest, Estimate
+from twin.effect import Scales
+from twin.events.dropouts import SIGMAS
 from twin.events.evidence import Evidence
 from twin.events.scan import Events, scan_events
 from twin.noise.model import NoiseModel, estimate_noise
@@ -91,6 +93,13 @@ def _loud(recordings: Sequence[Recording], events: Sequence[Events], noise: Nois
 
 def _strongest(events: Sequence[Events], name: str) -> Evidence:
     return max((e.evidence[name] for e in events), key=lambda one: one.log_likelihood_ratio)
+
+
+def smallest_seen(noise: NoiseModel, scales: Scales, travel: float) -> tuple[EffectTest, ...]:
+    """What the readings themselves would have to show: the smallest false reading and step that are named."""
+    step, sigma = max(_LEAST_STEP * travel, noise.position.sigma), noise.position.sigma
+    seen = (("sensor_dropouts", "size", SIGMAS * sigma), ("sensor_quantization", "step", step))
+    return tuple(EffectTest(name, True, "", parameter, size, scales.position_unit) for name, parameter, size in seen)
 
 
 def _noise_without(noise: NoiseModel, step: float) -> float:

@@ -87,7 +87,7 @@ def test_the_smallest_size_that_would_have_shown_is_that_of_a_change(slow: Recor
     for record, design in ((a_record(Plant(DesignModel())), DesignModel()), (slow, worn(0.5))):
         result, _ = judged(record, design)
         case, channel = result.case, result.decisions[-1].findings.channel
-        [test] = detection_limits([channel], case.base, case.scales, [effect("sensor_lag")], DecisionRules())
+        [test, *_] = detection_limits([channel], case.base, case.scales, [effect("sensor_lag")], DecisionRules())
         assert test.detection_limit is not None
         limits.append(test.detection_limit)
     assert 0.5 < limits[1] / limits[0] < 2.0

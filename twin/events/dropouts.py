@@ -20,7 +20,8 @@ from twin.noise.model import poisson_tail
 
 BoolArray = npt.NDArray[np.bool_]
 
-_SIGMAS = 6.0
+#: Of the noise; a reading has to stand out by so much to be called false.
+SIGMAS = 6.0
 _LONGEST = 3
 _JUMP = 5.0  # times the usual step from reading to reading around it
 _WINDOW = 9
@@ -47,7 +48,7 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
         return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
     y = reading[known]
     apart = y - median_filter(y, _WINDOW, mode="nearest")
-    bound = _SIGMAS * max(noise_sigma, 1e-12)
+    bound = SIGMAS * max(noise_sigma, 1e-12)
     false = _isolated(y, np.abs(apart) > bound, bound)
     rows[known] = false
     count = int(false.sum())
@@ -57,7 +58,7 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     spread = max(float(np.ptp(y)), bound)
     # each false reading: somewhere in the range, instead of that far out on a Gaussian
     gains = (
-        np.minimum(0.5 * (sizes / (bound / _SIGMAS)) ** 2, 50.0) - log(spread / (bound / _SIGMAS)) + log(count / y.size)
+        np.minimum(0.5 * (sizes / (bound / SIGMAS)) ** 2, 50.0) - log(spread / (bound / SIGMAS)) + log(count / y.size)
     )
     ratio = max(0.0, float(gains.sum()))
     estimates = {

@@ -43,6 +43,8 @@ def blind_spots(tests: Sequence[EffectTest], scales: Scales) -> list[BlindSpot]:
     """Effects that are not testable, or only where they are larger than clear."""
     spots = []
     for test in tests:
+        if test.name not in effects():
+            continue
         form = effects()[test.name].forms[0]
         inserted = Inserted(test.name, form, _clear(form, scales))
         main = next((k for k, p in enumerate(form.parameters) if p.name == test.parameter), None)
@@ -115,5 +117,6 @@ def _clear_size(p: Parameter) -> float:
 
 def _beyond(form: Form, main: int, test: EffectTest, scales: Scales) -> bool:
     p = form.parameters[main]
-    clear = abs(_clear_size(p) - p.neutral) * scales.factor(p.kind)
-    return test.detection_limit is not None and test.detection_limit > clear
+    factor = scales.factor(p.kind)
+    limit = None if test.detection_limit is None else abs(test.detection_limit - p.neutral * factor)
+    return limit is not None and limit > abs(_clear_size(p) - p.neutral) * factor

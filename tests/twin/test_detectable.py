@@ -1,0 +1,74 @@
+"""The smallest size that a record would have shown: in proportion, with a threshold, per cause, and in windows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from twin.catalog import effect, effects
+from twin.choose.decide import DecisionRules
+from twin.detectable import detection_limits, smallest_shown, unseen_in_windows
+from twin.diagnosis import EffectTest
+from twin.plant import Inserted, Plant
+from twin.sensing import smallest_seen
+from twin.stages import StageResult
+
+
+@pytest.fixture(scope="module")
+def healthy() -> StageResult:
+    return judged(a_record(Plant(DesignModel())))[0]
+
+
+@given(st.floats(0.5, 3.9), st.floats(-3.0, -0.1))
+def test_a_power_law_is_followed_to_where_it_suffices(order: float, place: float) -> None:
+    there = 10.0**place
+    found = smallest_shown(lambda size: (size / there) ** order, 0.01, 1.0)
+    assert 0.8 <= (found / there) ** order <= 1.3
+
+
+def test_a_threshold_is_found_and_never_undercut() -> None:
+    found = smallest_shown(lambda size: 0.0 if size < 0.3 else 50.0 * size, 0.01, 1.0)
+    assert 0.3 <= found <= 1.0
+    assert smallest_shown(lambda size: 0.5 * size, 0.01, 1.0) > 1.0
+    assert smallest_shown(lambda size: 0.0, 0.01, 1.0) == float("inf")
+
+
+@pytest.mark.parametrize("name", ["dead_time", "lvdt_nonlinearity", "sensor_lag"])
+def test_what_is_larger_than_the_limit_is_noticed_and_what_is_smaller_is_not(healthy: StageResult, name: str) -> None:
+    case = healthy.case
+    channels = [d.findings.channel for d in healthy.decisions]
+    tests = detection_limits(channels, case.base, case.scales, [effect(name)], DecisionRules())
+    [test] = [t for t in tests if t.name == name]
+    form = effect(name).form(test.form)
+    assert test.detection_limit is not None
+    for times, noticed in ((0.4, False), (3.0, True)):
+        sizes = {p.name: p.neutral if p.size else p.starts[0] for p in form.parameters}
+        sizes[test.parameter] = times * test.detection_limit
+        _, judgement = judged(a_record(Plant(DesignModel(), (Inserted(name, form, tuple(sizes.values())),))))
+        assert bool(judgement.causes) is noticed
+
+
+def test_every_cause_has_a_line(healthy: StageResult) -> None:
+    case = healthy.case
+    channels = [d.findings.channel for d in healthy.decisions]
+    tests = detection_limits(channels, case.base, case.scales, tuple(effects().values()), DecisionRules())
+    tests = (*tests, *smallest_seen(case.noise, case.scales, case.travel))
+    numbers = {f"parameter:{n}" for n in ("compliance", "deadband", "offset", "tau", "rate_limit", "ep_tau")}
+    assert {t.name for t in tests} == set(effects()) | numbers
+    supply = next(t for t in tests if t.name == "supply_saturation")
+    assert supply.detection_limit is None or 4.0 < supply.detection_limit < 20.0  # a pressure, not a distance
+
+
+def test_what_is_slow_is_not_promised_from_windows(healthy: StageResult) -> None:
+    channel, case = healthy.decisions[-1].findings.channel, healthy.case
+    tests = (EffectTest("lvdt_drift", True, "", "rate", 1e-6, "in/s"), EffectTest("creep", True, "", "share", 0.01))
+    assert unseen_in_windows(tests, channel, case) == tests
+    longer = [replace(r, time_s=np.linspace(0.0, 100.0 * r.duration_s, r.n)) for r in case.recordings]
+    drift, creep = unseen_in_windows(tests, channel, replace(case, recordings=tuple(longer)))
+    assert not drift.testable and creep.testable
