@@ -13,6 +13,9 @@ from twin.timegrid import TimeGrid, make_grid
 
 #: Rows right after the start that do not count: the state before the first row is unknown.
 SETTLE_S = 3.0
+#: Share of the command's span that is a step; in times of the short intervals, one in which rows are missing; the
+#: largest share of rows that steps at unknown times may cost.
+_STEP, _LATE, _MOST = 0.02, 1.6, 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,13 +56,33 @@ def make_trial(
         use_y &= ~bad_rows
     early = recording.time_s - recording.time_s[0] < SETTLE_S
     use_p = np.zeros_like(use_y)
+    vague = after_unseen_steps(recording)
     if recording.pressure is not None:
-        use_p = np.isfinite(recording.pressure) & ~early
+        use_p = np.isfinite(recording.pressure) & ~early & ~vague
+    else:
+        use_y &= ~vague
     position = _at_start(recording.position, use_y)
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
     return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early, fresh=fresh)
+
+
+def after_unseen_steps(recording: Recording) -> npt.NDArray[np.bool_]:
+    """Rows that still feel a step of the command whose time nobody knows, because it fell among missing rows.
+
+    None of them where that would leave too little: then the step is taken for where the row says.
+    """
+    none = np.zeros(recording.n, dtype=np.bool_)
+    if recording.n < 3:
+        return none
+    since_s = np.diff(recording.time_s, prepend=recording.time_s[0])
+    step = np.abs(np.diff(recording.command, prepend=recording.command[0]))
+    late = since_s > _LATE * np.percentile(since_s[1:], 10.0)
+    unseen = late & (step > _STEP * np.ptp(recording.command))
+    last_s = np.maximum.accumulate(np.where(unseen, recording.time_s, -np.inf))
+    vague = recording.time_s - last_s < SETTLE_S
+    return np.asarray(vague) if vague.mean() < _MOST else none
 
 
 def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:
