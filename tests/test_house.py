@@ -29,10 +29,8 @@ LONG_FUNCTIONS = {
     "app/commands/set.py:command",
     "app/session.py:open_bench",
     "tests/twin/report_example.py:diagnosis",
-    "twin/diagnose.py:diagnose",
     "twin/kernels/coupled.py:coupled_steps",
     "twin/kernels/stem.py:stem_pass",
-    "twin/partial.py:known_so_far",
     "twin/where/smoother.py:smooth_pressure",
 }
 

@@ -1,24 +1,23 @@
 """The answer of a diagnosis: where, which, how far, how sure, what next; and its JSON.
 
 Everything here is data. The keys that scripts rely on are those of the interfaces page; keys beyond them
-(`statement`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`) are free.
+(`statement`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`, `interrupted`, a cause's
+`form`, a candidate's `rejected`) are free.
 """
 
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
 from logs.recording import DataNote
+from twin.strict import json_ready
 
 Verdict = Literal["no_gap", "parameter", "effect", "effects", "unexplained"]
 Interval = tuple[float, float]
-
-_DIGITS = 6  # significant digits in the file: more would pretend, and would change with the machine
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,22 +48,28 @@ class Bin:
 
 @dataclass(frozen=True, slots=True)
 class Cause:
-    """A named cause. `heldout_gap_without`: the held-out RMS [% of travel] when this cause is left out."""
+    """A named cause. `heldout_gap_without`: the held-out RMS [% of travel] when this cause is left out. `form`: which
+    form of its effect the updated model has; empty for a design number."""
 
     name: str
     stage: str
     probability: float
     heldout_gap_without: float | None = None
     parameters: Mapping[str, Estimate] = field(default_factory=dict)
+    form: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Ranked:
-    """One line of the ranking: a candidate, its probability, its held-out RMS [% of travel]."""
+    """One line of the ranking: a candidate, its probability, its held-out RMS [% of travel].
+
+    `rejected`: it was taken for a cause, or was next to one, and unseen data spoke against it.
+    """
 
     name: str
     probability: float
     heldout_gap: float | None
+    rejected: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +122,10 @@ class EffectTest:
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """The verdict on a set of recordings. `statement` is the sentence an operator reads first."""
+    """The verdict on a set of recordings. `statement` is the sentence an operator reads first.
+
+    `interrupted`: Ctrl-C came before the end, and what is here is what was known by then.
+    """
 
     verdict: Verdict
     statement: str
@@ -134,6 +142,7 @@ class Diagnosis:
     noise: Mapping[str, object] = field(default_factory=dict)
     closed_loop: Mapping[str, object] = field(default_factory=dict)
     version: str = ""
+    interrupted: bool = False
 
     def to_json(self) -> dict[str, object]:
         """Plain dicts, lists, numbers and None, ready for a strict JSON writer (no NaN, no infinity)."""
@@ -142,10 +151,7 @@ class Diagnosis:
             "statement": self.statement,
             "causes": [_cause(cause) for cause in sorted(self.causes, key=lambda c: -c.probability)],
             "confusable": self.confusable,
-            "ranking": [
-                {"name": line.name, "probability": line.probability, "heldout_gap": line.heldout_gap}
-                for line in self.ranking
-            ],
+            "ranking": [_ranked(line) for line in self.ranking],
             "where": _where(self.where),
             "gap": _gap(self.gap),
             "next_experiment": _next(self.next_experiment),
@@ -156,6 +162,7 @@ class Diagnosis:
             "noise": self.noise,
             "closed_loop": self.closed_loop,
             "version": self.version,
+            "interrupted": self.interrupted,
         }
         plain = json_ready(document)
         assert isinstance(plain, dict)
@@ -168,35 +175,26 @@ def write_diagnosis(diagnosis: Diagnosis, path: Path) -> None:
     path.write_text(text + "\n", encoding="utf-8")
 
 
-def json_ready(value: object) -> object:
-    """`value` as JSON types: tuples and arrays as lists, six significant digits, non-finite numbers as None.
-
-    Raises: TypeError for an object that has no JSON form.
-    """
-    if value is None or isinstance(value, (str, bool, int)):
-        return value
-    if isinstance(value, float):
-        return float(f"{value:.{_DIGITS}g}") if math.isfinite(value) else None
-    if isinstance(value, Mapping):
-        return {str(key): json_ready(item) for key, item in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [json_ready(item) for item in value]
-    as_list = getattr(value, "tolist", None)  # numpy arrays and scalars
-    if as_list is not None:
-        return json_ready(as_list())
-    raise TypeError(f"{type(value).__name__} has no JSON form")
-
-
 def _cause(cause: Cause) -> dict[str, object]:
     return {
         "name": cause.name,
         "stage": cause.stage,
+        "form": cause.form or None,
         "probability": cause.probability,
         "heldout_gap_without": cause.heldout_gap_without,
         "parameters": {
             name: {"value": estimate.value, "ci95": estimate.ci95, "unit": estimate.unit}
             for name, estimate in cause.parameters.items()
         },
+    }
+
+
+def _ranked(line: Ranked) -> dict[str, object]:
+    return {
+        "name": line.name,
+        "probability": line.probability,
+        "heldout_gap": line.heldout_gap,
+        "rejected": line.rejected,
     }
 
 

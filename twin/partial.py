@@ -1,21 +1,29 @@
 """What is known of a diagnosis that was interrupted: the quality of the data, the noise, the gap of the design and
-where it lies; and the verdict, if it had been reached. Causes that were only being tried are not named.
+where it lies; how well each cause alone would do, if that had been tried; and the verdict, if it had been reached.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from logs.recording import DataNote
-from twin.case import Case
+from hal.errors import BadInput
+from logs.recording import DataNote, Recording
+from twin.admit import admit
+from twin.case import Case, make_case
+from twin.choose.score import make_yardstick
+from twin.choose.search import Searcher
+from twin.choose.weigh import Weights
 from twin.closure import gap
-from twin.diagnosis import Diagnosis
+from twin.diagnosis import Diagnosis, Gap, Ranked
 from twin.fit.channel import predict_reading
+from twin.fit.fitting import Fit
 from twin.fit.smooth import smoothed_pressure
-from twin.stages import StageResult
+from twin.fit.trial import Trial
+from twin.noise.model import NoiseModel, estimate_noise
+from twin.plant import Plant
 from twin.verdict import Judgement
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
@@ -32,9 +40,20 @@ class Interrupted(KeyboardInterrupt):
 
 
 @dataclass(slots=True)
-class Stage:
-    """Where a diagnosis is: what its progress was told last."""
+class Known:
+    """What a diagnosis has found out so far, and what its progress was told last.
 
+    `margin_share`: the largest share of the margin in a channel's variance. `searches`: those that were begun.
+    """
+
+    recordings: tuple[Recording, ...]
+    plant: Plant
+    notes: list[DataNote] = field(default_factory=list)
+    noise: NoiseModel | None = None
+    case: Case | None = None
+    margin_share: float = 0.0
+    searches: list[Searcher] = field(default_factory=list)
+    judgement: Judgement | None = None
     what: str = "the start"
     share: float = 0.0
 
@@ -47,49 +66,98 @@ class Stage:
 
         return tell
 
-    def __str__(self) -> str:
+    @property
+    def stage(self) -> str:
+        """Where the diagnosis is, in words."""
         return f"{self.what} ({100.0 * self.share:.0f} %)"
 
 
-def known_so_far(
-    case: Case, notes: Sequence[DataNote], stage: Stage, seed: int, judgement: Judgement | None = None
-) -> Diagnosis:
-    """The part of the diagnosis that is sure: nothing that was fitted only half is in it.
+def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
+    """The part of the diagnosis that is sure; None where the records cannot carry one.
 
-    Without a `judgement` the verdict is "unexplained": no cause had been decided on.
+    Without a judgement the verdict is "unexplained": no cause had been decided on. The ranking is provisional then.
     """
-    trials = case.trials
-    if case.sigma_p is not None:
-        memory = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
-        plain = [smoothed_pressure(case.base, t, case.sigma_p, memory) for t in trials]
-        trials = tuple(t.with_pressure(p) for t, p in zip(trials, plain, strict=True))
-    error = np.concatenate([np.where(t.use_y, t.recording.position - predict_reading(case.base, t), np.nan)
-                            for t in case.trials])  # fmt: skip
-    nothing = np.full(error.size, np.nan)
-    numbers = gap(error, nothing, nothing, case.sigma_y, case.travel, case.noise.position.correlation_samples, seed)
-    signals = frozenset({"pressure"} if case.sigma_p is not None else set())
+    try:
+        case = known.case or _plain_case(known)
+    except BadInput:
+        return None
+    numbers = _gap(case, seed)
     diagnosis = Diagnosis(
         verdict="unexplained",
-        statement=f"Interrupted at {stage}, before a cause was decided on: the design is off by {numbers.before:.2g} % "
-        f"of travel, and the readings' own noise is {numbers.noise_floor:.2g} %.",
+        statement="",
         causes=(),
-        ranking=(),
-        gap=replace(numbers, reducible_closed=None),
-        where=whereabouts(case, StageResult(case, (), trials), seed),
-        data_quality=tuple(n for r in case.recordings for n in r.notes) + tuple(notes),
-        residual_signature={"interrupted_at": str(stage)},
-        structure=tuple(describe(signals)),
+        ranking=_provisional(known.searches, weights),
+        gap=numbers,
+        where=whereabouts(case, _driven(case), seed),
+        data_quality=tuple(n for r in case.recordings for n in r.notes) + tuple(known.notes),
+        residual_signature={"interrupted_at": known.stage},
+        structure=tuple(describe(frozenset({"pressure"} if case.sigma_p is not None else set()))),
+        interrupted=True,
     )
+    judgement = known.judgement
+    if judgement is not None:
+        diagnosis = replace(
+            diagnosis,
+            verdict=judgement.verdict,
+            causes=judgement.causes,
+            ranking=judgement.ranking,
+            confusable=judgement.confusable,
+        )
+    return replace(diagnosis, statement=_statement(known, numbers))
+
+
+def _plain_case(known: Known) -> Case:
+    """The case before anything was found out about timing or false readings. Raises: `BadInput` as `admit`."""
+    noise = known.noise or estimate_noise(known.recordings)
+    admit(known.recordings, known.plant, noise)
+    return make_case(known.recordings, known.plant.design, known.plant.inserted, noise=noise)
+
+
+def _driven(case: Case) -> tuple[Trial, ...]:
+    """The trials with their smoothed measured pressure, as the design alone smooths it."""
+    if case.sigma_p is None:
+        return case.trials
+    memory = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
+    return tuple(t.with_pressure(smoothed_pressure(case.base, t, case.sigma_p, memory)) for t in case.trials)
+
+
+def _gap(case: Case, seed: int) -> Gap:
+    """The gap of the design; nothing was fitted, so every row is unseen."""
+    rows = [np.where(t.use_y, t.recording.position - predict_reading(case.base, t), np.nan) for t in case.trials]
+    error = np.concatenate(rows)
+    nothing = np.full(error.size, np.nan)
+    memory = case.noise.position.correlation_samples
+    numbers = gap(error, nothing, nothing, case.sigma_y, case.travel, memory, seed)
+    return replace(numbers, reducible_closed=None)
+
+
+def _provisional(searches: list[Searcher], weights: Weights) -> tuple[Ranked, ...]:
+    """The causes that were tried alone, with their odds against each other; not what a finished search would say."""
+    lines: list[Ranked] = []
+    for search in searches:
+        best: dict[str, Fit] = {}
+        for one in sorted(search.tried, key=lambda f: -f.mse):
+            best[one.names[0]] = one
+        if not best:
+            continue
+        yardstick = make_yardstick(min(best.values(), key=lambda f: f.mse).residuals, search.channel.use)
+        scores = np.array([yardstick.score(one) for one in best.values()])
+        odds = np.exp((scores - scores.max()) / weights.temperature)
+        chances = np.minimum(odds / odds.sum(), weights.ceiling)
+        lines += [Ranked(name, float(p), None) for name, p in zip(best, chances, strict=True)]
+    return tuple(sorted(lines, key=lambda line: -line.probability))
+
+
+def _statement(known: Known, numbers: Gap) -> str:
+    judgement = known.judgement
     if judgement is None:
-        return diagnosis
+        return (
+            f"Interrupted at {known.stage}, before a cause was decided on: the design is off by {numbers.before:.2g} % "
+            f"of travel, and the readings' own noise is {numbers.noise_floor:.2g} %."
+        )
     names = " and ".join(c.name for c in judgement.causes)
     said = judgement.verdict.replace("_", " ") + (f": {names}" if names else "")
-    return replace(
-        diagnosis,
-        verdict=judgement.verdict,
-        causes=judgement.causes,
-        ranking=judgement.ranking,
-        confusable=judgement.confusable,
-        statement=f"Interrupted at {stage}, after the verdict ({said}) and before the gap was measured on held-out "
-        f"data: the design is off by {numbers.before:.2g} % of travel (noise {numbers.noise_floor:.2g} %).",
+    return (
+        f"Interrupted at {known.stage}, after the verdict ({said}) and before all of it was checked on held-out data: "
+        f"the design is off by {numbers.before:.2g} % of travel (noise {numbers.noise_floor:.2g} %)."
     )

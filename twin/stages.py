@@ -22,6 +22,7 @@ from twin.fit.trial import Trial
 from twin.plant import Plant
 
 Progress = Callable[[str, float], None]
+Watch = Callable[[Searcher], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,18 +54,25 @@ def combined(base: Plant, fits: Sequence[Fit]) -> Plant:
     return Plant(design, found.inserted)
 
 
-def judge(case: Case, search: SearchRules, rules: DecisionRules, progress: Progress) -> StageResult:
-    """Runs the search on every channel that the signals allow."""
+def judge(
+    case: Case,
+    search: SearchRules,
+    rules: DecisionRules,
+    progress: Progress,
+    watch: Watch = lambda _searcher: None,
+) -> StageResult:
+    """Runs the search on every channel that the signals allow; `watch` is shown each search as it begins."""
     if case.sigma_p is None:
         channel = chain_channel(case.trials, case.sigma_y)
         if case.noise.position.source != "repeats":
             # Without measured pressure and without repeats nobody knows how much the pressure wandered by itself.
             rules = replace(rules, quiet=3.0 * rules.quiet)
-        return StageResult(case, (_judge(case, channel, search, rules, progress),), case.trials)
-    first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress)
+        return StageResult(case, (_judge(case, channel, search, rules, progress, watch),), case.trials)
+    first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     trials = drive_by_measured(case, first)
     channel = position_channel(trials, case.sigma_y)
-    second = _judge(case, channel, search, rules, progress, 1.0 + _pressure_doubt(case, channel, first))
+    floor = 1.0 + _pressure_doubt(case, channel, first)
+    second = _judge(case, channel, search, rules, progress, watch, floor)
     return StageResult(case, (first, second), trials)
 
 
@@ -86,10 +94,17 @@ def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> 
 
 
 def _judge(
-    case: Case, channel: Channel, search: SearchRules, rules: DecisionRules, progress: Progress, floor: float = 1.0
+    case: Case,
+    channel: Channel,
+    search: SearchRules,
+    rules: DecisionRules,
+    progress: Progress,
+    watch: Watch,
+    floor: float = 1.0,
 ) -> Decision:
-    findings = Searcher(channel, case.base, case.scales, search, progress, _resting(case, channel)).run()
-    return leaning(decide(findings, rules, floor), case.scales, rules)
+    searcher = Searcher(channel, case.base, case.scales, search, progress, _resting(case, channel))
+    watch(searcher)
+    return leaning(decide(searcher.run(), rules, floor), case.scales, rules)
 
 
 def _resting(case: Case, channel: Channel) -> float:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 
 import numpy as np
 
-from control.design import DesignModel
 from twin.case import Case
 from twin.diagnosis import Share, Where
 from twin.fit.channel import predict_reading, predict_reading_given_pressure, pressure_fine
 from twin.fit.fitting import Fit
+from twin.fit.numbers import NUMBERS, nominal, retuned
+from twin.fit.trial import Trial
 from twin.plant import Plant
 from twin.stages import StageResult, combined
 from twin.where.map import WherePiece, where_map
@@ -20,10 +21,10 @@ from twin.where.telescope import shares_of
 _STAGES = ("ep", "actuator", "sensor")
 
 
-def whereabouts(case: Case, result: StageResult, seed: int) -> Where:
-    """The where-map of the design's error, with `attributed` where causes are named."""
+def whereabouts(case: Case, trials: Sequence[Trial], seed: int) -> Where:
+    """The where-map of the design's error as the signals of `trials` alone have it; `attributed` stays open."""
     pieces = []
-    for trial in result.trials:
+    for trial in trials:
         driven = trial.pressure is not None
         pressure = trial.pressure if trial.pressure is not None else pressure_fine(case.base, trial)
         pieces.append(
@@ -36,16 +37,20 @@ def whereabouts(case: Case, result: StageResult, seed: int) -> Where:
                 use=trial.use_y,
             )
         )
-    where = where_map(pieces, case.noise.position, case.travel, seed)
-    return replace(where, attributed=_attributed(case, result, seed))
+    return where_map(pieces, case.noise.position, case.travel, seed)
 
 
-def _attributed(case: Case, result: StageResult, seed: int) -> dict[str, Share] | None:
-    """Shares of the explained error per stage: causes are inserted along the chain, each stage gets what it changed."""
-    fits = [d.accepted for d in result.decisions if d.explained]
+def attributed(case: Case, result: StageResult, named: Collection[str], seed: int) -> dict[str, Share] | None:
+    """Shares of the explained error per stage, with the causes that the final verdict has `named`; None without any.
+
+    Causes are inserted along the chain, and each stage gets what it changed. A stage without a named cause gets
+    nothing: what re-tuning moved there in passing goes with the first stage that has one.
+    """
+    fits = [d.accepted for d in result.decisions if d.explained and not set(d.names).isdisjoint(named)]
     if not fits:
         return None
-    plants = [_up_to(case, fits, stage) for stage in (None, *_STAGES)]
+    guilty = [stage for stage in _STAGES if any(c.stage == stage for f in fits for c in f.space.causes)]
+    plants = [case.base, *(_up_to(case, fits, guilty, last) for last in _STAGES)]
     steps = [np.concatenate([predict_reading(p, t) for t in case.trials]) for p in plants]
     use = np.concatenate([t.use_y for t in case.trials])
     parts = np.stack([(b - a)[use] for a, b in pairwise(steps)], axis=1)
@@ -53,19 +58,12 @@ def _attributed(case: Case, result: StageResult, seed: int) -> dict[str, Share] 
     return shares_of(parts * explained[:, None], list(_STAGES), 0.0, seed=seed)
 
 
-def _up_to(case: Case, fits: list[Fit], last: str | None) -> Plant:
-    """The plant with the causes of the stages up to `last` only."""
-    if last is None:
-        return case.base
-    kept = _STAGES[: _STAGES.index(last) + 1]
+def _up_to(case: Case, fits: Sequence[Fit], guilty: Sequence[str], last: str) -> Plant:
+    """The plant with the causes, and the numbers that go with them, of the stages up to `last` only."""
+    kept = [stage for stage in guilty if _STAGES.index(stage) <= _STAGES.index(last)]
     whole = combined(case.base, fits)
     stage_of = {c.name: c.stage for f in fits for c in f.space.causes}
     inserted = [i for i in whole.inserted if i.effect in stage_of and stage_of[i.effect] in kept]
-    numbers = {n for f in fits for n in f.space.numbers}
-    design = whole.design if "actuator" in kept else _with_ep_only(case, whole, "ep_tau" in numbers)
-    return Plant(design, case.base.inserted).having(inserted)
-
-
-def _with_ep_only(case: Case, whole: Plant, retuned_ep: bool) -> DesignModel:
-    design = case.base.design
-    return replace(design, ep_tau_s=whole.design.ep_tau_s) if retuned_ep else design
+    owner = {n: NUMBERS[n] if NUMBERS[n] in guilty else guilty[0] for f in fits for n in f.space.numbers}
+    moved = {n: nominal(whole.design, n) for n, stage in owner.items() if stage in kept}
+    return Plant(retuned(case.base.design, moved), case.base.inserted).having(inserted)

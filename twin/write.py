@@ -7,19 +7,25 @@ from pathlib import Path
 
 import numpy as np
 
-from control.design import save_design
+from control.design import DesignModel, save_design
 from logs.recording import FloatArray
 from twin.diagnose import Outcome
-from twin.diagnosis import write_diagnosis
+from twin.diagnosis import Diagnosis, write_diagnosis
 from twin.report.page import write_report
 from twin.report.series import Series
 from twin.rrd import write_rrd
 
 Progress = Callable[[str, float], None]
+#: Everything that a diagnosis writes; `rounds.json` is the circle's.
+FILES = ("diagnosis.json", "model.toml", "next.toml", "report.html", "diagnosis.rrd", "rounds.json")
 
 
 def write_outcome(outcome: Outcome, folder: Path, progress: Progress) -> None:
-    """Writes all files of a diagnosis into `folder`, which exists; the verdict first, the pictures after it."""
+    """Writes all files of a diagnosis into `folder`, which exists; the verdict first, the pictures after it.
+
+    What an earlier diagnosis left there goes first: no file may speak of another verdict than the one beside it.
+    """
+    clear(folder)
     write_diagnosis(outcome.diagnosis, folder / "diagnosis.json")
     save_design(outcome.model, folder / "model.toml", outcome.diagnosis.statement, outcome.effect_units)
     if outcome.next_file is not None:
@@ -30,6 +36,19 @@ def write_outcome(outcome: Outcome, folder: Path, progress: Progress) -> None:
     progress("report", 0.8)
     write_rrd(outcome.diagnosis, series, folder / "diagnosis.rrd")
     progress("report", 1.0)
+
+
+def write_known(diagnosis: Diagnosis, design: DesignModel, folder: Path) -> None:
+    """Writes what an interrupted diagnosis knew, and the design as it was given, and nothing else."""
+    clear(folder)
+    write_diagnosis(diagnosis, folder / "diagnosis.json")
+    save_design(design, folder / "model.toml", diagnosis.statement)
+
+
+def clear(folder: Path) -> None:
+    """Removes the files of an earlier diagnosis from `folder`; records and anything else stay."""
+    for name in FILES:
+        (folder / name).unlink(missing_ok=True)
 
 
 def series_of(outcome: Outcome) -> Series:

@@ -92,6 +92,7 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
     from twin.partial import Interrupted
     from twin.write import write_outcome
 
+    outcome = None
     model, origin = design_for(design, recordings)
     said = () if design else (DataNote(f"no --design given: {origin}", _WITHOUT_DESIGN.get(origin, "")),)
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
@@ -107,6 +108,10 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
     except Interrupted as stop:
         _leave(stop.diagnosis, model, out)
         raise
+    except KeyboardInterrupt:
+        if outcome is not None and (out / "model.toml").is_file():
+            click.echo(f"Interrupted at the pictures; {out / 'diagnosis.json'} and model.toml beside it are complete.")
+        raise
     return outcome
 
 
@@ -116,11 +121,9 @@ def _accuses_numbers(outcome: Outcome) -> bool:
 
 def _leave(diagnosis: Diagnosis, model: DesignModel, out: Path) -> None:
     """What was known when Ctrl-C came, and the design as it was given."""
-    from control.design import save_design
-    from twin.diagnosis import write_diagnosis
+    from twin.write import write_known
 
-    write_diagnosis(diagnosis, out / "diagnosis.json")
-    save_design(model, out / "model.toml", diagnosis.statement)
+    write_known(diagnosis, model, out)
     click.echo(diagnosis.statement)
     click.echo(f"What is known so far: {out / 'diagnosis.json'}")
 

@@ -251,21 +251,3 @@ def test_a_loop_that_shows_no_curve_gives_no_design(tmp_path: Path, capsys: pyte
     file = write(tmp_path / "loop.csv", columns)
     assert run(["diagnose", file, *LOOP, "--out", str(tmp_path / "d")]) in (1, 2)
     assert "give the design as --design MODEL.toml (in percent and percent)" in capsys.readouterr().err
-
-
-def test_control_c_leaves_what_is_known(
-    healthy: Recording, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def stop(*arguments: Any) -> None:
-        arguments[-1]("position: one cause", 0.4)
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr("twin.diagnose.judge", stop)
-    file = write(tmp_path / "x.csv", columns_of(healthy))
-    assert run(["diagnose", file, "--out", str(tmp_path / "d")]) == 130
-    found = json.loads((tmp_path / "d" / "diagnosis.json").read_text())
-    assert found["statement"].startswith("Interrupted at position: one cause (40 %)")
-    assert (found["causes"], found["gap"]["after"]) == ([], None)
-    assert found["gap"]["before"] == pytest.approx(0.14, rel=0.2)
-    assert (tmp_path / "d" / "model.toml").is_file()
-    assert "interrupted" in capsys.readouterr().err

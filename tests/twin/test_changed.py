@@ -20,7 +20,7 @@ from twin.fit.channel import position_channel
 from twin.fit.space import Cause, cause_starts, make_space
 from twin.insert import inserted_from, plant_of
 from twin.plant import Inserted, Plant
-from twin.whereabouts import whereabouts
+from twin.whereabouts import attributed
 
 LAG = effect("sensor_lag").form("first_order")
 
@@ -50,11 +50,18 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
 
 def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
-    attributed = whereabouts(result.case, result, 1).attributed
-    assert attributed is not None
-    shares = {stage: share.value for stage, share in attributed.items()}
-    assert shares["sensor"] == pytest.approx(1.0, abs=0.05)
-    assert shares["ep"] == pytest.approx(0.0, abs=0.05)
+    found = attributed(result.case, result, ["sensor_lag"], 1)
+    assert found is not None
+    shares = {stage: share.value for stage, share in found.items()}
+    # what re-tuning moved before the sensor is no cause, and no share
+    assert shares == pytest.approx({"ep": 0.0, "actuator": 0.0, "sensor": 1.0}, abs=1e-12)
+    assert found["ep"].ci95 == (0.0, 0.0)
+
+
+def test_nothing_is_attributed_to_a_cause_that_was_taken_back(slow: Recording) -> None:
+    result, _ = judged(slow, worn(0.2))
+    assert result.causes == ("sensor_lag",)
+    assert attributed(result.case, result, [], 1) is None
 
 
 def test_what_went_away_is_named_too() -> None:

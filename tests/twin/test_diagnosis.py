@@ -20,9 +20,9 @@ from twin.diagnosis import (
     Ranked,
     Share,
     Where,
-    json_ready,
     write_diagnosis,
 )
+from twin.strict import json_ready
 
 # as promised on the interfaces page
 PROMISED = "verdict causes confusable ranking where gap next_experiment data_quality version"  # the interfaces page

@@ -11,8 +11,8 @@ import numpy as np
 import pytest
 
 from tests.twin.report_example import diagnosis, series
-from twin.diagnosis import Bin, Diagnosis, Gap, Share
-from twin.report.content import columns, gap_marks, share_bars
+from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Ranked, Share
+from twin.report.content import cause_rows, columns, gap_marks, ranking_rows, share_bars, top_share
 from twin.report.figures import planes
 from twin.report.page import render, write_report
 from twin.report.series import Series, busiest_window, thin, thin_together
@@ -113,14 +113,45 @@ def test_bars_show_masking_and_columns_their_scale() -> None:
     assert bars[0].left + bars[0].width == pytest.approx(bars[0].zero)
     assert max(bar.high for bar in bars) == pytest.approx(100.0)
     assert share_bars(None) == []
-    shown = columns((Bin(0.0, 0.5, Share(0.4, (0.3, 0.5))), Bin(0.5, 1.0, Share(0.6, (0.5, 0.8)))), 100.0)
+    shown = columns((Bin(0.0, 0.5, Share(0.4, (0.3, 0.5))), Bin(0.5, 1.0, Share(0.6, (0.5, 0.8)))), 0.8, 100.0)
     assert shown[1].label == "50"
     assert shown[1].height == pytest.approx(75.0)
-    assert columns((Bin(-0.0014, 2.7, Share(1.0, (0.9, 1.0))),))[0].label == "0"
-    assert columns((Bin(0.002, 0.004, Share(1.0, (0.9, 1.0))),))[0].label == "0.0020"
-    assert columns(None) == []
+    assert columns((Bin(-0.0014, 2.7, Share(1.0, (0.9, 1.0))),), 1.0)[0].label == "0"
+    assert columns((Bin(0.002, 0.004, Share(1.0, (0.9, 1.0))),), 1.0)[0].label == "0.0020"
+    assert columns(None, 1.0) == []
     marks = gap_marks(Gap(4.0, 3.0, 0.2, 0.1, None))
     assert [mark.place for mark in marks] == sorted(mark.place for mark in marks)
+
+
+def test_all_columns_share_one_scale_that_is_printed(page: str) -> None:
+    low, high = (Bin(0.0, 1.0, Share(v, (v, v + 0.05))) for v in (0.1, 0.62))
+    assert top_share(((low,), None, (high,))) == pytest.approx(0.7)
+    assert columns((low,), 0.7)[0].height == pytest.approx(100.0 / 7.0)
+    printed = re.findall(r'class="top">([^<]*)</span>', page)
+    assert len(printed) == 4
+    assert len(set(printed)) == 1
+
+
+def test_a_verdict_without_a_gap_gives_no_stage_a_share_of_it(shown: Series) -> None:
+    known = diagnosis(shown)
+    page = render(replace(known, verdict="no_gap", causes=(), where=replace(known.where, attributed=None)), shown)
+    boxes = re.findall(r'class="box">[^<]*<small>([^<]*)</small>', page)
+    assert boxes == ["no gap"] * 3
+
+
+def test_rejected_candidates_are_shown_as_such_and_none_is_left_out(shown: Series) -> None:
+    lines = tuple(Ranked(f"candidate_{k}", 0.0, 3.0 + k, rejected=True) for k in range(20))
+    unclear = replace(diagnosis(shown), verdict="unexplained", causes=(), confusable=(), ranking=lines)
+    rows = ranking_rows(unclear)
+    assert len(rows) == 20
+    assert {row["probability"] for row in rows} == {"rejected"}
+
+
+def test_a_cause_says_which_form_of_the_equations_it_has() -> None:
+    rows = cause_rows(
+        (Cause("ep_calibration", "ep", 0.9, form="gain_and_zero"), Cause("parameter:tau", "actuator", 0.9))
+    )
+    assert [row["form"] for row in rows] == ["gain and zero", ""]
 
 
 def test_a_fast_stroke_is_drawn_whole() -> None:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from math import ceil
 
 from twin.catalog import effects
 from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Share
 from twin.report.words import interval, name, number, percent
-
-_RANKS = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +28,7 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A column of a binned group; heights in percent of the highest whisker."""
+    """A column of a binned group; heights in percent of the scale's top."""
 
     label: str
     text: str
@@ -76,11 +75,16 @@ def share_bars(group: Mapping[str, Share] | None) -> list[Bar]:
     ]
 
 
-def columns(bins: tuple[Bin, ...] | None, scale: float = 1.0) -> list[Column]:
-    """Columns of a binned group; bin edges are multiplied by `scale` for their labels."""
+def top_share(groups: Iterable[tuple[Bin, ...] | None]) -> float:
+    """The top of one scale for all binned groups: the highest column or whisker, rounded up to a tenth."""
+    highest = max((max(b.share.ci95[1], b.share.value) for bins in groups for b in bins or ()), default=0.0)
+    return max(0.1, ceil(10.0 * highest - 1e-9) / 10.0)
+
+
+def columns(bins: tuple[Bin, ...] | None, top: float, scale: float = 1.0) -> list[Column]:
+    """Columns of a binned group up to a share of `top`; bin edges are multiplied by `scale` for their labels."""
     if not bins:
         return []
-    top = max(max(b.share.ci95[1], b.share.value) for b in bins) or 1.0
     return [
         Column(
             label=number(_edge(b.low, b) * scale, 2),
@@ -121,6 +125,7 @@ def cause_rows(causes: tuple[Cause, ...]) -> list[dict[str, object]]:
             {
                 "name": name(cause.name),
                 "stage": name(cause.stage),
+                "form": name(cause.form) if effect and len(effect.forms) > 1 else "",
                 "probability": percent(cause.probability),
                 "without": number(cause.heldout_gap_without),
                 "claim": effect.claim if effect else "The design model has the effect, with another number.",
@@ -135,19 +140,19 @@ def cause_rows(causes: tuple[Cause, ...]) -> list[dict[str, object]]:
 
 
 def ranking_rows(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    """The first twelve candidates with their probability bars, whether named, and their confusion set."""
+    """All candidates with their probability bars, whether named or rejected, and their confusion set."""
     named = {cause.name for cause in diagnosis.causes}
     sets = {member: f"{chr(65 + i)}" for i, group in enumerate(diagnosis.confusable) for member in group}
     return [
         {
             "name": name(line.name),
-            "probability": percent(line.probability),
+            "probability": "rejected" if line.rejected else percent(line.probability),
             "width": 100.0 * max(0.0, min(line.probability, 1.0)),
             "gap": number(line.heldout_gap),
             "named": line.name in named,
             "set": sets.get(line.name, ""),
         }
-        for line in diagnosis.ranking[:_RANKS]
+        for line in diagnosis.ranking
     ]
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from twin.diagnosis import Diagnosis, Where
+from twin.diagnosis import Diagnosis
 from twin.report.content import (
     cause_rows,
     columns,
@@ -16,6 +16,7 @@ from twin.report.content import (
     ranking_rows,
     share_bars,
     tested_rows,
+    top_share,
 )
 from twin.report.series import Series
 from twin.report.words import VERDICTS, interval, name, number, percent
@@ -60,30 +61,32 @@ def render(diagnosis: Diagnosis, series: Series) -> str:
 def _where(diagnosis: Diagnosis, series: Series) -> dict[str, object]:
     where = diagnosis.where
     minutes = where.time is not None and where.time[-1].high > 600.0
+    top = top_share((where.position, where.pressure, where.time, where.frequency))
     return {
-        "chain": _chain(where),
+        "chain": _chain(diagnosis),
         "stage": share_bars(where.stage),
         "attributed": share_bars(where.attributed),
         "direction": share_bars(where.direction),
         "regime": share_bars(where.regime),
+        "top": percent(top),
         "binned": [
-            ("position", "% of travel", columns(where.position, 100.0 / series.travel)),
-            ("pressure", series.pressure_unit, columns(where.pressure)),
-            ("run time", "min" if minutes else "s", columns(where.time, 1.0 / 60.0 if minutes else 1.0)),
-            ("frequency", "Hz", columns(where.frequency)),
+            ("position", "% of travel", columns(where.position, top, 100.0 / series.travel)),
+            ("pressure", series.pressure_unit, columns(where.pressure, top)),
+            ("run time", "min" if minutes else "s", columns(where.time, top, 1.0 / 60.0 if minutes else 1.0)),
+            ("frequency", "Hz", columns(where.frequency, top)),
         ],
     }
 
 
-def _chain(where: Where) -> dict[str, str]:
-    """What each box of the chain says about its share of the gap."""
-    shares = where.attributed or where.stage or {}
+def _chain(diagnosis: Diagnosis) -> dict[str, str]:
+    """What each box of the chain says about its share of the gap; without a gap there is nothing to say."""
+    boxes = ("ep", "actuator", "sensor")
+    if diagnosis.verdict == "no_gap":
+        return dict.fromkeys(boxes, "no gap")
+    shares = diagnosis.where.attributed or diagnosis.where.stage or {}
     joint = shares.get("actuator_or_sensor")
     together = f"{percent(joint.value)} with its neighbour" if joint else "share not known"
-    return {
-        key: f"{percent(shares[key].value)} of the gap" if key in shares else together
-        for key in ("ep", "actuator", "sensor")
-    }
+    return {key: f"{percent(shares[key].value)} of the gap" if key in shares else together for key in boxes}
 
 
 def _figures(diagnosis: Diagnosis, series: Series) -> dict[str, str]:

@@ -1,0 +1,109 @@
+"""What `lostmotion diagnose` leaves in its folder: nothing of an earlier verdict, and after Ctrl-C what is known."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from app.cli import run
+from tests.app.test_diagnose import columns_of, write
+from tests.control.toy_valve import Toy, random_steps, record
+from twin.choose.search import Searcher
+from twin.write import FILES
+
+STALE = "of an earlier diagnosis"
+
+
+@pytest.fixture(autouse=True)
+def no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The report and the view have tests of their own."""
+    monkeypatch.setattr("twin.write.write_report", lambda *_: None)
+    monkeypatch.setattr("twin.write.write_rrd", lambda *_: None)
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """200 s of the design's own valve at 5 Hz."""
+    healthy = record(Toy(), np.arange(0.0, 200.0, 0.2), random_steps(200.0, 0.2), noise_p=0.02, noise_x=8e-4)
+    return write(tmp_path_factory.mktemp("record") / "x.csv", columns_of(healthy))
+
+
+@pytest.fixture
+def out(tmp_path: Path) -> Path:
+    """A folder in which an earlier diagnosis and a record lie."""
+    for name in (*FILES, "notes.txt"):
+        (tmp_path / name).write_text(STALE)
+    return tmp_path
+
+
+def stale_in(out: Path) -> list[str]:
+    return sorted(path.name for path in out.iterdir() if STALE in path.read_text(encoding="utf-8"))
+
+
+def stopped(file: str, out: Path) -> dict[str, Any]:
+    """Diagnoses what is interrupted on the way, and reads what is left."""
+    assert run(["diagnose", file, "--out", str(out)]) == 130
+    document: dict[str, Any] = json.loads((out / "diagnosis.json").read_text())
+    return document
+
+
+def stop(*arguments: Any, **_: Any) -> None:
+    arguments[-1]("position: one cause", 0.4)
+    raise KeyboardInterrupt
+
+
+def test_nothing_of_an_earlier_diagnosis_stays(file: str, out: Path) -> None:
+    assert run(["diagnose", file, "--out", str(out)]) == 0
+    assert stale_in(out) == ["notes.txt"]
+    assert json.loads((out / "diagnosis.json").read_text())["interrupted"] is False
+
+
+def test_control_c_leaves_what_is_known(
+    file: str, out: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("twin.diagnose.judge", stop)
+    found = stopped(file, out)
+    assert found["statement"].startswith("Interrupted at position: one cause (40 %)")
+    assert (found["causes"], found["gap"]["after"], found["interrupted"]) == ([], None, True)
+    assert found["gap"]["before"] == pytest.approx(0.14, rel=0.2)
+    assert stale_in(out) == ["notes.txt"]
+    assert (out / "model.toml").is_file()
+    assert not (out / "report.html").exists()
+    assert "interrupted" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("where", ["cut_at_holes", "settled_timing", "late_commands", "predict_reading"])
+def test_control_c_early_or_late_leaves_the_gap_of_the_design(
+    file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
+) -> None:
+    def at_once(*_: Any, **__: Any) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(f"twin.diagnose.{where}", at_once)
+    found = stopped(file, tmp_path)
+    assert found["interrupted"] is True
+    assert found["gap"]["before"] == pytest.approx(0.14, rel=0.2)
+
+
+def test_control_c_leaves_the_causes_that_were_tried_alone(
+    file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tried = Searcher._polished
+
+    def interrupted(self: Searcher, fits: Any) -> Any:
+        if self.channel.name == "position":
+            raise KeyboardInterrupt
+        return tried(self, fits)
+
+    monkeypatch.setattr(Searcher, "_polished", interrupted)
+    found = stopped(file, tmp_path)
+    names = [line["name"] for line in found["ranking"]]
+    assert {"stiction", "parameter:tau", "dead_time"} <= set(names)
+    assert len(names) == len(set(names))
+    chances = [line["probability"] for line in found["ranking"]]
+    assert chances == sorted(chances, reverse=True)
+    assert found["causes"] == []
