@@ -23,6 +23,7 @@ from twin.gap import GapParts, retuning_pays, upheld
 from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
+from twin.noise.copies import used_once
 from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Known, known_so_far
 from twin.pieces import cut_at_holes
@@ -135,7 +136,9 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
 def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Case, Case, Sensing, tuple[Inserted, ...]]:
     """The case, the look at it that is searched, what the readings themselves show, and how late commands are."""
     plant = known.plant
-    recordings, notes = cut_at_holes(known.recordings)
+    alone, copies = used_once(known.recordings)
+    recordings, notes = cut_at_holes(alone)
+    notes += copies
     noise = estimate_noise(recordings)
     notes += admit(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise

@@ -22,6 +22,7 @@ from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
 from twin.fit.smooth import smoothed_pressure
 from twin.fit.trial import Trial
+from twin.noise.copies import used_once
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Plant
 from twin.verdict import Judgement
@@ -108,6 +109,7 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
 
 def _plain_case(known: Known) -> Case:
     """The case before anything was found out about timing or false readings. Raises: `BadInput` as `admit`."""
+    known.recordings = tuple(used_once(known.recordings)[0])
     noise = known.noise or estimate_noise(known.recordings)
     admit(known.recordings, known.plant, noise)
     return make_case(known.recordings, known.plant.design, known.plant.inserted, noise=noise)

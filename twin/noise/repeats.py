@@ -13,6 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
+from twin.noise.copies import copied
 
 _MATCH = 0.97  # share of time in which the commands must agree
 _LEAST_SHARE = 0.5  # of the rows that lie over each other
@@ -36,8 +37,25 @@ class RepeatPair:
         A straight drift between the repeats is taken out: it does not repeat, yet it is no noise.
         """
         ours: FloatArray | None = getattr(self.first, name)
+        found = self._other(name)
+        if ours is None or found is None:
+            return None
+        other, part = found
+        raw = ours[self.rows] - other
+        # a mean of two readings is quieter than one: the scale follows the interpolation weights
+        scaled = raw / np.sqrt(1.0 + np.mean(part**2 + (1.0 - part) ** 2))
+        return _settled(np.asarray(scaled - _straight_line(scaled)))
+
+    @property
+    def copied(self) -> bool:
+        """Whether both are one recording of the position, given twice or overlapping: that shows no noise."""
+        found = self._other("position")
+        return found is not None and copied(self.first.position[self.rows], found[0])
+
+    def _other(self, name: str) -> tuple[FloatArray, FloatArray] | None:
+        """The second recording's signal at the rows of the first, and where between its own rows that is (0 to 1)."""
         theirs: FloatArray | None = getattr(self.second, name)
-        if ours is None or theirs is None:
+        if theirs is None:
             return None
         at = self.first.time_s[self.rows] + self.shift_s
         right = np.clip(np.searchsorted(self.second.time_s, at), 1, self.second.n - 1)
@@ -46,10 +64,7 @@ class RepeatPair:
         later = np.where(part > 0.0, part * theirs[right], 0.0)  # a missing neighbour of no weight does not matter
         other = later + np.where(part < 1.0, (1.0 - part) * theirs[right - 1], 0.0)
         other[span > 3.0 * self.second.period_s] = np.nan  # no straight line across a hole in the record
-        raw = ours[self.rows] - other
-        # a mean of two readings is quieter than one: the scale follows the interpolation weights
-        scaled = raw / np.sqrt(1.0 + np.mean(part**2 + (1.0 - part) ** 2))
-        return _settled(np.asarray(scaled - _straight_line(scaled)))
+        return other, part
 
 
 def find_repeats(recordings: Sequence[Recording]) -> list[RepeatPair]:
@@ -62,13 +77,13 @@ def find_repeats(recordings: Sequence[Recording]) -> list[RepeatPair]:
         for place, earlier in enumerate(representatives):
             pair = _aligned(earlier, recording)
             if pair is not None:
-                pairs.append(pair)
+                pairs += [] if pair.copied else [pair]
                 representatives[place] = recording  # compare neighbours in time: what drifts, drifts least there
                 break
         else:
             representatives.append(recording)
             own = _periodic(recording)
-            if own is not None:
+            if own is not None and not own.copied:
                 pairs.append(own)
     return pairs[:_MAX_PAIRS]
 
