@@ -17,6 +17,7 @@ from twin.diagnosis import EffectTest, NextExperiment
 from twin.next.coverage import best_coverage, blind_spots
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
+from twin.next.fresh import open_sweep, poor_ground
 from twin.next.limits import Limits, limits_of
 from twin.next.rivals import Dispute, disputes
 from twin.next.search import Found, best_experiment
@@ -27,6 +28,8 @@ from twin.verdict import Judgement
 FILE = "next.toml"
 #: An experiment that brings less than this share of what settles a dispute is not worth the bench's time.
 _HELPS = 0.3
+#: ... and below this share it is not even a hint.
+_HINTS = 0.05
 #: What is asked of an experiment beyond what settles a dispute on average: half of the time less comes out.
 _SAFE = 1.5
 #: Times the noise: what named causes may leave before it is worth a word.
@@ -50,23 +53,12 @@ def propose(
     limits = limits_of(case.base.design, case.recordings)
     open_ = disputes(result, judgement)
     if not open_ and judgement.causes:
-        sure = min(c.probability for c in judgement.causes)
-        left = max(d.accepted.mse for d in result.decisions) ** 0.5
-        if left > _MUCH:
-            return Proposal(
-                NextExperiment(
-                    f"No experiment is needed to name the causes (probability at least {sure:.2f}); they leave "
-                    f"{left:.2g} times the noise, which no candidate explains: repeat the record to see whether that "
-                    "repeats."
-                )
-            )
-        return Proposal(
-            NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
-        )
+        return _settled(result, judgement)
     if not judgement.causes:
         return _coverage(result, judgement, tests, rules, limits)
     words = [_alike_words(dispute, case.sigma_p is not None) for dispute in open_ if dispute.alike]
     needed = _SAFE * weights.temperature * math.log(1.0 / weights.confusable)
+    best: Proposal | None = None
     for dispute in open_:
         if not dispute.rivals:
             continue
@@ -75,7 +67,40 @@ def propose(
         if max(gains.values()) >= _HELPS:
             return _experiment(result, dispute, found, gains, words)
         words += [_below_noise(dispute, found, case.sigma_p is not None, result)]
+        if best is None and max(gains.values()) >= _HINTS:
+            best = _hint(found, max(gains.values()))
+    if best is not None:
+        text = " ".join([*words, best.next.why])
+        return Proposal(NextExperiment(text, FILE), best.file, best.experiment)
     return Proposal(NextExperiment(" ".join(words) or "No experiment of the library separates what is left."))
+
+
+def _settled(result: StageResult, judgement: Judgement) -> Proposal:
+    """After causes beyond dispute; what they leave is said of the signal in which it is."""
+    sure = min(c.probability for c in judgement.causes)
+    worst = max(result.decisions, key=lambda d: d.accepted.mse)
+    left = worst.accepted.mse**0.5
+    if left <= _MUCH:
+        return Proposal(
+            NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
+        )
+    signal = "pressure" if worst.findings.channel.name == "pressure" else "position"
+    why = (
+        f"No experiment is needed to name the causes (probability at least {sure:.2f}); in the {signal}, on the rows "
+        f"that they were fitted to, they leave {left:.2g} times its noise, which no candidate explains: repeat the "
+        "record to see whether that repeats."
+    )
+    return Proposal(NextExperiment(why))
+
+
+def _hint(found: Found, gain: float) -> Proposal:
+    """The experiment that comes nearest, where none is enough: with the next diagnosis it may be another dispute."""
+    experiment = rounded(found.experiment)
+    why = (
+        f"Without another signal the most that an experiment can add is {100.0 * gain:.0f} % of what settles it, "
+        f"in {duration_words(experiment.duration_s)}."
+    )
+    return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
 
 
 def _experiment(
@@ -89,12 +114,13 @@ def _experiment(
     helped = [_plain(name) for name, gain in gains.items() if _HELPS <= gain < 1.0]
     claims = [f"separates {_plain(dispute.cause)} from {' and '.join(settled)}"] if settled else []
     claims += [f"helps to separate {_plain(dispute.cause)} from {' and '.join(helped)}"] if helped else []
+    open_ = [_plain(name) for name, gain in gains.items() if gain < _HELPS]
     size = max(found.distances, key=lambda d: d.gain).spread
     why = (
         f"{' and '.join(claims)} in {duration_words(experiment.duration_s)}: "
         f"predictions differ by up to {size:.2g} {unit} RMS beyond what re-fitting could hide."
     )
-    why = why[0].upper() + why[1:]
+    why = why[0].upper() + why[1:] + (f" It leaves {' and '.join(open_)} open." if open_ else "")
     text = " ".join([why, *words])
     return Proposal(NextExperiment(text, FILE), toml_text(experiment, why), experiment)
 
@@ -106,20 +132,49 @@ def _coverage(
     spots = blind_spots(tests, result.case.scales)
     unexplained = judgement.verdict == "unexplained"
     start = "None of the known effects accounts for the gap. " if unexplained else ""
-    if not spots:
-        rest = "These records would have shown every known effect of a clear size"
-        tail = "; repeat them to see whether the gap repeats." if unexplained else ": no further experiment is needed."
-        return Proposal(NextExperiment(start + rest + tail))
-    found = best_coverage(result, spots, rules, limits)
+    fresh = _fresh_start(result, limits, start) if unexplained else None
+    if fresh is not None:
+        return fresh
+    found = best_coverage(result, spots, rules, limits) if spots else None
     if found is None:
-        names = ", ".join(_plain(spot.name) for spot in spots)
-        return Proposal(NextExperiment(f"{start}No experiment of the library would show {names} of a clear size."))
+        here = "These records would have shown every known effect of a clear size"
+        here += f", except {_blind_words([spot.name for spot in spots], tests)}" if spots else ""
+        unshown = ", which no experiment of the library would show" if spots else ""
+        tail = "; repeat them to see whether the gap repeats." if unexplained else ": no further experiment is needed."
+        return Proposal(NextExperiment(start + here + unshown + tail))
     experiment = rounded(found.experiment)
     why = (
-        f"{start}The next experiment would show {', '.join(_plain(n) for n in found.shown)}, which these records could "
-        f"not, in {duration_words(experiment.duration_s)}."
+        f"{start}The next experiment would show {_blind_words(found.shown, tests)}, in "
+        f"{duration_words(experiment.duration_s)}."
     )
     return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
+
+
+def _fresh_start(result: StageResult, limits: Limits, start: str) -> Proposal | None:
+    """Where the records are a poor ground for explaining a gap: the plain sweep to begin with; else None."""
+    poor = poor_ground(result.case.everything.recordings, result.case.travel)
+    sweep = open_sweep(limits)
+    if poor is None or sweep is None:
+        return None
+    experiment = rounded(sweep)
+    why = (
+        f"{start}The records are a poor ground to look for others: {poor}. Sweep the valve in open loop over its full "
+        f"stroke with inner reversals ({experiment.kind}, {duration_words(experiment.duration_s)}), and diagnose that."
+    )
+    return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
+
+
+def _blind_words(names: Sequence[str], tests: Sequence[EffectTest]) -> str:
+    """Effects with what these records say of each: nothing, or only from which size on."""
+    limits = {t.name: t for t in tests if t.testable and t.detection_limit is not None}
+    hidden = [_plain(name) for name in names if name not in limits]
+    words = [f"{' and '.join(hidden)} (here not testable)"] if hidden else []
+    for name in names:
+        if name in limits:
+            test = limits[name]
+            size = f"{test.detection_limit:.2g} {'' if test.unit == '1' else test.unit}".strip()
+            words.append(f"{_plain(name)} (here only with a {_plain(test.parameter)} above {size})")
+    return ", ".join(words)
 
 
 def _scale(result: StageResult, dispute: Dispute) -> Scale:
@@ -138,14 +193,20 @@ def _alike_words(dispute: Dispute, measured_pressure: bool) -> str:
 
 
 def _below_noise(dispute: Dispute, found: Found, measured_pressure: bool, result: StageResult) -> str:
-    best = max(found.distances, key=lambda d: d.gain)
-    rival = dispute.rivals[found.distances.index(best)].name
+    """That no experiment tells the cause from any of its rivals, and which signal would tell it from which."""
     scale = _scale(result, dispute)
-    share = best.spread / (scale.sigma * scale.excess**0.5)
+    share = max(d.spread for d in found.distances) / (scale.sigma * scale.excess**0.5)
+    signals: dict[str, list[str]] = {}
+    for rival in dispute.rivals:
+        signals.setdefault(advice(dispute.cause, rival.name, measured_pressure), []).append(_plain(rival.name))
+    names = " or ".join(_plain(rival.name) for rival in dispute.rivals)
+    if len(signals) == 1:
+        add = next(iter(signals))
+    else:
+        add = "; ".join(f"for {' and '.join(rivals)} {signal}" for signal, rivals in signals.items())
     return (
-        f"{_plain(dispute.cause).capitalize()} and {_plain(rival)} cannot be separated with these sensors: in the best "
-        f"experiment of the library they differ by {share:.2g} of the noise; add "
-        f"{advice(dispute.cause, rival, measured_pressure)}."
+        f"{_plain(dispute.cause).capitalize()} cannot be separated from {names} with these sensors: in the best "
+        f"experiment of the library they differ by at most {share:.2g} of the noise; add {add}."
     )
 
 

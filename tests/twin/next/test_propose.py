@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,16 +12,18 @@ import pytest
 from click.testing import CliRunner
 
 from app.cli import cli
+from control.design import DesignModel
 from control.experiment_file import from_plain
-from tests.twin.next.two_lags import dispute, result
+from tests.twin.next.two_lags import dispute, record, result
 from twin.choose.decide import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest
 from twin.next.candidates import library
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
+from twin.next.fresh import poor_ground
 from twin.next.limits import limits_of
-from twin.next.propose import Proposal, propose
+from twin.next.propose import Proposal, _below_noise, _settled, propose
 from twin.next.search import best_experiment
 from twin.next.sensors import advice
 from twin.verdict import Judgement
@@ -77,6 +80,73 @@ def test_after_no_gap_it_shows_what_the_records_could_not() -> None:
 def test_an_effect_seen_only_when_huge_counts_as_not_shown() -> None:
     huge = EffectTest("creep", True, "", "share", 0.5, "1")
     assert "creep" in proposed(result(*PAIR), judged(), (huge,)).next.why
+
+
+def test_what_a_record_shows_only_from_a_size_on_is_said_with_that_size() -> None:
+    huge = EffectTest("creep", True, "", "share", 0.5, "1")
+    blind = EffectTest("friction_in_motion", False, "this record does not excite it")
+    why = proposed(result(*PAIR), judged(), (huge, blind)).next.why
+    assert "friction in motion (here not testable)" in why
+    assert "creep (here only with a share above 0.5)" in why
+
+
+def in_closed_loop() -> SimpleNamespace:
+    """The same records, as a controller would have made them."""
+    found = result(*PAIR)
+    looped = tuple(replace(r, target=r.position) for r in found.case.recordings)
+    return SimpleNamespace(case=replace(found.case, recordings=looped), decisions=found.decisions)
+
+
+def test_an_unexplained_gap_of_a_closed_loop_asks_for_an_open_sweep_with_reversals() -> None:
+    unclear = Judgement("unexplained", (), (), ())
+    blind = EffectTest("friction_in_motion", False, "this record does not excite it")
+    proposal = proposed(in_closed_loop(), unclear, (blind,))
+    assert "closed loop" in proposal.next.why
+    assert proposal.file is not None
+    assert tomllib.loads(proposal.file)["kind"] == "nested"
+    # a gap that is explained, and one of an open loop over the whole stroke, ask for something else
+    assert "closed loop" not in proposed(in_closed_loop(), judged(), (blind,)).next.why
+    seen = EffectTest("creep", True, "", "share", 0.001, "1")
+    assert "repeat them to see whether the gap repeats" in proposed(result(*PAIR), unclear, (seen,)).next.why
+
+
+def test_a_stem_that_hardly_moves_is_a_poor_ground() -> None:
+    [record] = result(*PAIR).case.recordings
+    assert poor_ground([record], 0.5625) is None
+    small = replace(record, position=0.3 * record.position)
+    assert "of its travel only" in str(poor_ground([small], 0.5625))
+    assert poor_ground([small, record], 0.5625) is None
+
+
+def test_the_rest_is_said_of_the_signal_in_which_it_is() -> None:
+    found = result(*PAIR)
+    [decision] = found.decisions
+    pressure = SimpleNamespace(
+        accepted=SimpleNamespace(mse=64.0), findings=SimpleNamespace(channel=SimpleNamespace(name="pressure"))
+    )
+    both = SimpleNamespace(case=found.case, decisions=(decision, pressure))
+    why = _settled(both, judged("dead_time", probability=0.97)).next.why  # type: ignore[arg-type]
+    assert "in the pressure" in why
+    assert "8 times its noise" in why
+
+
+def test_every_rival_is_named_with_the_signal_that_would_tell() -> None:
+    names = ("dead_time", "sensor_lag", "additional_lag")
+    both = dispute(*names)
+    found = best_experiment(both, Scale("chain", 0.0006, 0.1), limits_of(DesignModel(), [record()]), 50.0)
+    words = _below_noise(both, found, False, result(*names))  # type: ignore[arg-type]
+    assert "from sensor lag or additional lag" in words
+    assert "for sensor lag a second position signal" in words
+    assert "for additional lag a measured pressure" in words
+
+
+def test_an_experiment_that_is_not_enough_is_offered_beside_the_signal(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("twin.next.propose._HELPS", 1e9)
+    proposal = proposed(result(*PAIR), judged("dead_time", confusable=(PAIR,)))
+    assert "cannot be separated from sensor lag with these sensors" in proposal.next.why
+    assert "of what settles it" in proposal.next.why
+    assert proposal.file is not None
+    assert from_plain(tomllib.loads(proposal.file), "file").duration_s > 0.0
 
 
 def test_the_best_experiment_is_worth_more_than_any_of_the_library() -> None:
