@@ -16,6 +16,7 @@ from twin.diagnosis import Gap, Interval, Share
 from twin.where.bootstrap import block_rows, block_sums, interval, resample
 
 NOTHING_TO_CLOSE = 1.05  # before / floor: below it the closed share is a quotient of noises
+FLOOR_DOUBT = 0.05  # standard error of a floor over the floor, as `twin/where/telescope.py` has it
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,11 +49,13 @@ def closure(
     floor: float,
     correlation_samples: float = 1.0,
     seed: int = 0,
+    floor_relative_error: float = 0.0,
 ) -> Share | None:
     """The closed share of the reducible squared error with its 95 % interval; None when `before` is at the floor.
 
     `before` and `after` are residuals of the same held-out rows, shape (n,), in the unit of `floor`; rows with a NaN
-    in either are left out. Negative when the model made it worse.
+    in either are left out. Negative when the model made it worse, above 1 when `after` is below the floor, which is
+    itself measured: its standard error, `floor_relative_error` of it, is part of the interval.
     """
     known = np.isfinite(before) & np.isfinite(after)
     rows = int(known.sum())
@@ -61,9 +64,10 @@ def closure(
     squares = np.stack([np.square(before[known]), np.square(after[known])], axis=1)
     block = block_rows(correlation_samples, squares.sum(axis=1))
     means = resample(block_sums(squares, block), rows, block, seed) / rows
-    reducible = means[:, 0] - floor**2
+    floors = floor * (1.0 + floor_relative_error * np.random.default_rng(seed + 1).standard_normal(len(means)))
+    reducible = means[:, 0] - floors**2
     with np.errstate(divide="ignore", invalid="ignore"):
-        replicates = np.where(reducible > 0, 1.0 - (means[:, 1] - floor**2) / reducible, np.nan)
+        replicates = np.where(reducible > 0, 1.0 - (means[:, 1] - floors**2) / reducible, np.nan)
     return Share(_closed(rms(before[known]), rms(after[known]), floor), interval(replicates))
 
 
@@ -83,7 +87,7 @@ def gap(
         retuned=percent * rms(retuned),
         after=percent * rms(after),
         noise_floor=percent * floor,
-        reducible_closed=closure(before, after, floor, correlation_samples, seed),
+        reducible_closed=closure(before, after, floor, correlation_samples, seed, FLOOR_DOUBT),
     )
 
 

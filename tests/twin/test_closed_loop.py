@@ -67,6 +67,21 @@ def test_the_model_without_the_effect_misses_what_the_loop_does() -> None:
     assert errors["recorded"] - errors["predicted"] > 1.0
 
 
+def test_all_records_with_targets_count_and_settling_is_compared_where_both_settle() -> None:
+    calm, sticky = recorded(Plant(DesignModel())), recorded(STICKY)
+    one, both = closed_loop([sticky], Plant(DesignModel())), closed_loop([calm, sticky], Plant(DesignModel()))
+    assert (one["holds"], both["holds"]) == (3, 6)
+    assert both["records"] == ["loop", "loop"]
+    errors = [table(said, "steady_error_percent_of_travel")["recorded"] for said in (one, both)]
+    assert errors[0] == errors[1]  # the worst is the sticky one's
+    assert table(one, "never_settled")["recorded"] > 0
+    unsettled = max(table(both, "never_settled").values())
+    assert both["settled_in_both"] == 6 - unsettled
+    [alone] = [closed_loop([calm], Plant(DesignModel()))]
+    times = table(alone, "settling_s")
+    assert times["predicted"] == pytest.approx(times["recorded"], abs=0.2)
+
+
 def test_a_strangers_record_is_judged_on_its_own_command() -> None:
     record = replace(recorded(Plant(DesignModel())), meta={})
     said = closed_loop([record], Plant(DesignModel()))

@@ -35,6 +35,16 @@ def test_nothing_to_close_is_none() -> None:
     assert closure(np.full(N, np.nan), noise(1), FLOOR) is None
 
 
+def test_a_model_a_little_below_a_floor_that_is_itself_measured_may_have_closed_all() -> None:
+    before, after = noise(1) + slow(1.0), 0.97 * noise(1)
+    sure, doubtful = (closure(before, after, FLOOR, seed=1, floor_relative_error=e) for e in (0.0, 0.05))
+    assert sure is not None
+    assert doubtful is not None
+    assert sure.value == doubtful.value > 1.0
+    assert sure.ci95[0] > 1.0
+    assert doubtful.ci95[0] < 1.0 < doubtful.ci95[1]
+
+
 def test_missing_rows_are_left_out_of_both() -> None:
     before, after = noise(1) + slow(4.0), noise(1) + slow(0.4)
     before[::7], after[::5] = np.nan, np.nan
