@@ -1,6 +1,6 @@
 """Explain an effect: what is claimed, how it is modelled, what it looks like, which experiment shows it.
 
-Without EFFECT, lists all of them.
+Without EFFECT, lists all of them. parameter:NAME explains a number of the design model.
 """
 
 from __future__ import annotations
@@ -38,6 +38,11 @@ def command(
     if name is None:
         _list(list(effects().values()), as_json)
         return
+    if name.startswith("parameter:"):
+        if form_name or kind or out:
+            raise BadInput(f"{name} is a number of the design model: --form, --experiment and --out are for effects")
+        _number_of_design(name.removeprefix("parameter:"), as_json)
+        return
     from twin.explain import KINDS, signature, visibilities
 
     one = effect(name)
@@ -56,6 +61,23 @@ def command(
 
         files = save_effect_figure(effect_figure(one, _size(form, shown), shown), out / f"{name}-{form.name}")
         click.echo(f"drawn: {files[0]}, {files[1]}", err=as_json)
+
+
+def _number_of_design(name: str, as_json: bool) -> None:
+    """What the number of the verdict `parameter:NAME` is, and its value in the default design."""
+    from control.design import DesignModel
+    from twin.fit.numbers import MEANINGS, NUMBERS, nominal, unit
+
+    if name not in NUMBERS:
+        raise BadInput(f"no number of the design is called {name!r}; there are {', '.join(NUMBERS)}")
+    design = DesignModel()
+    value, its_unit = nominal(design, name), unit(design, name)
+    facts = {"name": f"parameter:{name}", "stage": NUMBERS[name], "claim": MEANINGS[name]}
+    if as_json:
+        click.echo(json.dumps({**facts, "unit": its_unit, "default": value}))
+        return
+    click.echo(f"parameter:{name} ({NUMBERS[name]}): the design has it with another number. {MEANINGS[name]}")
+    click.echo(f"default: {value:.4g} {its_unit}; `lostmotion diagnose --design MODEL.toml` takes another")
 
 
 def _form(one: Effect, name: str | None) -> Form:

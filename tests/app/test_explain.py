@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from app.cli import run
+from control.design import DesignModel
 from twin.catalog import effect, effects
+from twin.fit.numbers import NUMBERS, nominal
 
 
 def test_list_names_all(capsys: pytest.CaptureFixture[str]) -> None:
@@ -48,5 +50,26 @@ def test_json(capsys: pytest.CaptureFixture[str]) -> None:
     ],
 )
 def test_bad_input(words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["explain", *words]) == 2
+    assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", sorted(NUMBERS))
+def test_a_number_of_the_design_is_explained_as_verdicts_name_it(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert run(["explain", f"parameter:{name}", "--json"]) == 0
+    facts = json.loads(capsys.readouterr().out)
+    assert (facts["name"], facts["stage"]) == (f"parameter:{name}", NUMBERS[name])
+    assert facts["default"] == pytest.approx(nominal(DesignModel(), name))
+    assert run(["explain", f"parameter:{name}"]) == 0
+    assert facts["claim"] in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [(["parameter:mass"], "there are deadband"), (["parameter:tau", "--form", "x"], "are for effects")],
+)
+def test_what_is_no_number_or_not_of_one_is_refused(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     assert run(["explain", *words]) == 2
     assert sentence in capsys.readouterr().err

@@ -18,6 +18,17 @@ NUMBERS: Mapping[str, str] = {
 }
 
 
+#: What each number is, in words and in the design model's equations.
+MEANINGS: Mapping[str, str] = {
+    "deadband": "a1 - a2: how far the pressure turns back before the stem follows; the width of the play w.",
+    "offset": "(a1 + a2) / 2: the pressure about which both curves lie; bench set, zero of the converter.",
+    "compliance": "k in w = k (p - a): how far the stem goes per unit of pressure, on either curve.",
+    "tau": "in dx/dt = (w - x) / tau: how long the stem takes to follow the play's output.",
+    "rate_limit": "in |dx/dt| <= rate_limit: the fastest that the stem can move.",
+    "ep_tau": "in dp/dt = (u - p) / ep_tau: how long the pressure takes to follow the command.",
+}
+
+
 def nominal(design: DesignModel, name: str) -> float:
     """The value of a design number in the design's units."""
     values = {
