@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from hal.errors import BadInput
-from logs.calendar_text import parser_of
+from logs.calendar_text import FORMS, looks_like_time, parser_of
 from logs.dialect import MISSING, Dialect, clean, sniff, split
 from logs.recording import DataNote, FloatArray
 from logs.rows import check_quotes, line_of, why_not
@@ -74,9 +74,11 @@ class Table:
             except ValueError as error:
                 shown = text.partition("\n")[0][:40]
                 kind = "a number" if parse is float else "a time like those above it"
+                advice = "correct the cell, or leave it empty where the value is missing"
+                if parse is float and looks_like_time(text):
+                    advice = f"times are read as {FORMS}"
                 raise BadInput(
-                    f"{self.where}: {self.locate(row)}: '{shown}' in column '{header}' is not {kind}; "
-                    "correct the cell, or leave it empty where the value is missing"
+                    f"{self.where}: {self.locate(row)}: '{shown}' in column '{header}' is not {kind}; {advice}"
                 ) from error
         return values
 

@@ -16,7 +16,9 @@ from twin.diagnosis import Gap, Interval, Share
 from twin.where.bootstrap import block_rows, block_sums, interval, resample
 
 NOTHING_TO_CLOSE = 1.05  # before / floor: below it the closed share is a quotient of noises
-FLOOR_DOUBT = 0.05  # standard error of a floor over the floor, as `twin/where/telescope.py` has it
+#: Standard error of a floor over the floor: where it was measured at rest or between repeats (as
+#: `twin/where/telescope.py` has it), and where motion is in it.
+FLOOR_DOUBT, MOVING_DOUBT = 0.05, 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +81,7 @@ def gap(
     travel: float,
     correlation_samples: float = 1.0,
     seed: int = 0,
+    floor_relative_error: float = FLOOR_DOUBT,
 ) -> Gap:
     """The held-out numbers of a diagnosis in percent of travel; residuals, floor and travel share one unit."""
     percent = 100.0 / travel
@@ -87,7 +90,7 @@ def gap(
         retuned=percent * rms(retuned),
         after=percent * rms(after),
         noise_floor=percent * floor,
-        reducible_closed=closure(before, after, floor, correlation_samples, seed, FLOOR_DOUBT),
+        reducible_closed=closure(before, after, floor, correlation_samples, seed, floor_relative_error),
     )
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from twin.diagnosis import Cause, Diagnosis
 
 #: Up to so many times the noise an error is "as well as the noise allows".
@@ -19,7 +21,7 @@ def statement(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "no_gap":
         return (
             f"No gap: the design predicts this record to {g.before:.2g} % of travel, "
-            f"and the readings' own noise is {g.noise_floor:.2g} %."
+            f"and the readings' own noise is {g.noise_floor:.2g} %{_at_most(diagnosis)}."
         )
     if diagnosis.verdict == "unexplained":
         return (
@@ -34,6 +36,15 @@ def statement(diagnosis: Diagnosis) -> str:
         f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
         f"(noise {g.noise_floor:.2g} %){share}."
     )
+
+
+def _at_most(diagnosis: Diagnosis) -> str:
+    """That the noise is less than it seems, where the design errs less and the reading was never seen at rest."""
+    noise = diagnosis.noise.get("position")
+    source = noise.get("source") if isinstance(noise, Mapping) else None
+    moving = source in ("straight", "high_frequency")
+    seems = moving and diagnosis.gap.before < diagnosis.gap.noise_floor
+    return " or less: nothing shows it apart from the motion" if seems else ""
 
 
 def _named(cause: Cause) -> str:

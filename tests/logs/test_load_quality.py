@@ -94,3 +94,14 @@ def test_commands_that_take_effect_after_their_row_move_to_the_row_after(tmp_pat
     after = load(tmp_path, text, command_timing="after")
     assert after.command.tolist() == [3.0, 3.0, 4.0] and after.command_timing == "before"
     assert load(tmp_path, text, command_timing="unknown").command_timing == "unknown"
+
+
+def test_american_dates_are_read_and_a_slash_that_could_be_either_is_refused(tmp_path: Path) -> None:
+    rows = "time,command_psi,position_in\n03/05/2024 {0},5,0\n03/05/2024 {1},5,0.1\n"
+    noon = rows.format("11:59:59.500000 AM", "12:00:00.250000 PM")
+    assert np.diff(load(tmp_path, noon).time_s) == pytest.approx([0.75])
+    midnight = rows.format("12:00:00 AM", "01:00:00 AM")
+    assert np.diff(load(tmp_path, midnight).time_s) == pytest.approx([3600.0])
+    words = refusal(tmp_path, rows.format("11:59:59", "12:00:00"))
+    assert "times are read as 2024-03-05 08:00:00.5" in words
+    assert "03/05/2024 08:00:00 AM (month first)" in words

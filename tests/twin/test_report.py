@@ -17,6 +17,7 @@ from twin.report.figures import planes
 from twin.report.page import render, write_report
 from twin.report.series import Series, busiest_window, thin, thin_together
 from twin.report.words import number, percent
+from twin.statement import statement
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
 
@@ -194,3 +195,12 @@ def test_words() -> None:
     assert number(1.23e-7) == "1.23e-07"
     assert number(None) == "-"
     assert number(12345.6) == "12346"
+
+
+@pytest.mark.parametrize(
+    ("source", "before", "said"), [("still", 0.1, False), ("straight", 0.1, True), ("straight", 0.3, False)]
+)
+def test_a_noise_that_holds_motion_is_said_to_be_no_more_than_a_bound(source: str, before: float, said: bool) -> None:
+    gap = Gap(before, before, before, 0.2, None)
+    healthy = Diagnosis("no_gap", "", (), (), gap, noise={"position": {"source": source}})
+    assert ("or less" in statement(healthy)) is said
