@@ -14,6 +14,10 @@ if TYPE_CHECKING:
     from control.loop import Sink
 
 
+#: What to do about a model in percent beside a bench in another unit, or the other way round.
+_OF_THE_BENCH = "identify a model from a record of this bench"
+
+
 def with_twin(job: Job, path: Path, command_unit: str) -> Job:
     """The job with the model of the file beside it; its record names the model and the alarm's promise.
 
@@ -29,7 +33,7 @@ def with_twin(job: Job, path: Path, command_unit: str) -> Job:
     from twin.model_units import in_units_of
 
     try:
-        plant = plant_of(in_units_of(load_design(path), command_unit, "in"))
+        plant = plant_of(in_units_of(load_design(path), command_unit, "in", _OF_THE_BENCH))
     except BadInput as error:
         raise BadInput(f"--twin {path}: {str(error).removeprefix(f'{path}: ')}") from error
     rules = AlarmRules()

@@ -11,14 +11,17 @@ from logs.units import PERCENT, Quantity, conversion, plain_name
 from twin.catalog import effect
 from twin.effect import Scales
 
+#: What an operator can do about percent beside another unit, where the record is a file.
+_OF_A_FILE = "give the range with --units, as in {quantity}=percent(0..1 {unit}), or identify a model from the record"
 
-def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str) -> DesignModel:
-    """The same valve in other units.
+
+def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str, remedy: str = _OF_A_FILE) -> DesignModel:
+    """The same valve in other units; `remedy` is what to do where that cannot be, for the error.
 
     Raises: `BadInput` when the model is in percent and the recording is not, or the other way round.
     """
-    pressure = _factor(design.pressure_unit, pressure_unit, "pressure")
-    position = _factor(design.position_unit, position_unit, "position")
+    pressure = _factor(design.pressure_unit, pressure_unit, "pressure", remedy)
+    position = _factor(design.position_unit, position_unit, "position", remedy)
     if pressure == position == 1.0:
         return replace(design, pressure_unit=pressure_unit, position_unit=position_unit)
     scales = Scales(pressure=pressure, position=position)
@@ -35,14 +38,14 @@ def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str) -> 
     )
 
 
-def _factor(unit: str, wanted: str, quantity: Quantity) -> float:
+def _factor(unit: str, wanted: str, quantity: Quantity, remedy: str) -> float:
     if plain_name(unit) == plain_name(wanted):
         return 1.0
     given, needed = conversion(unit, quantity), conversion(wanted, quantity)
     if PERCENT in (given.unit, needed.unit) and given.unit != needed.unit:
         raise BadInput(
             f"the model's {quantity} is in {unit} and the recording's in {wanted}, and nothing says what 100 % is; "
-            f"give the range with --units, as in {quantity}=percent(0..1 {unit}), or identify a model from the record"
+            + remedy.format(quantity=quantity, unit=unit)
         )
     return given.scale / needed.scale
 

@@ -57,3 +57,12 @@ def test_a_model_that_cannot_be_read_is_said_before_anything_moves(tmp_path: Pat
     with pytest.raises(BadInput, match="no effect is called 'magic'"):
         run_verb.main([*words, "--twin", str(tmp_path / "odd.toml")], standalone_mode=False)
     assert not (tmp_path / "run").exists()
+
+
+def test_a_model_in_percent_is_refused_with_what_can_be_done_on_a_bench(tmp_path: Path) -> None:
+    save_design(replace(DesignModel(), pressure_unit="percent"), tmp_path / "percent.toml")
+    words = ["--controller", "pi", "--targets", "0.1", "--out", str(tmp_path / "run")]
+    with pytest.raises(BadInput, match="identify a model from a record of this bench") as caught:
+        run_verb.main([*words, "--twin", str(tmp_path / "percent.toml")], standalone_mode=False)
+    assert "--units" not in str(caught.value)
+    assert not (tmp_path / "run").exists()
