@@ -13,15 +13,15 @@ def ranked(result: StageResult, judgement: Judgement, alone: Mapping[str, float]
     """The candidates by probability, those of one probability by the error that they leave on their own.
 
     `alone`: held-out RMS [% of travel] per candidate. A candidate that was accepted on the rows that it was fitted to,
-    and then taken back, is rejected; where a gap is unexplained all are, since none accounts for it.
+    and then taken back, is rejected; where a gap is unexplained all are that were tried, since none accounts for it.
+    What the readings themselves show (false ones, coarse ones) was not tried, and stays.
     """
     probability = {line.name: line.probability for line in judgement.ranking}
     named = {cause.name for cause in judgement.causes}
     taken_back = set(result.causes) - named
-    if judgement.verdict == "unexplained":
-        taken_back = {*probability, *alone, *taken_back}
-    elif not named and taken_back:
-        taken_back |= set(probability)
+    if judgement.verdict == "unexplained" or (taken_back and not named):
+        tried = {name for d in result.decisions for one in d.findings.fits for name in one.names}
+        taken_back |= tried & {*probability, *alone}
     left = _left(result)
     believed = {**dict.fromkeys(taken_back, 0.0), **{n: p for n, p in probability.items() if n not in taken_back}}
 

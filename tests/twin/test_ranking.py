@@ -13,9 +13,8 @@ LINES = (Ranked("creep", 0.9, None), Ranked("stiction", 0.9, None), Ranked("dead
 
 def found(*accepted: str) -> SimpleNamespace:
     """A result whose single hypotheses leave less and less, with some accepted."""
-    fits = [
-        SimpleNamespace(names=(name,), mse=mse) for name, mse in (("creep", 6.0), ("dead_time", 4.0), ("ep_tau", 2.0))
-    ]
+    left = {"creep": 6.0, "stiction": 5.0, "dead_time": 4.0, "ep_tau": 2.0}
+    fits = [SimpleNamespace(names=(name,), mse=mse) for name, mse in left.items()]
     decision = SimpleNamespace(findings=SimpleNamespace(fits=fits, none=SimpleNamespace(mse=8.0)))
     return SimpleNamespace(decisions=(decision,), causes=accepted)
 
@@ -41,3 +40,10 @@ def test_candidates_of_no_probability_go_by_fit_and_not_by_name() -> None:
     lines = (Ranked("creep", 0.0, None), Ranked("dead_time", 0.0, None), Ranked("ep_tau", 0.0, None))
     order = [line.name for line in ranked(found(), Judgement("no_gap", (), lines, ()), {})]  # type: ignore[arg-type]
     assert order == ["ep_tau", "dead_time", "creep"]
+
+
+def test_what_the_readings_show_by_themselves_stays_beside_an_unexplained_gap() -> None:
+    judgement = Judgement("unexplained", (), (Ranked("sensor_dropouts", 0.97, None), *LINES), ())
+    first, *others = ranked(found("stiction"), judgement, {})  # type: ignore[arg-type]
+    assert (first.name, first.probability, first.rejected) == ("sensor_dropouts", 0.97, False)
+    assert all(line.rejected for line in others)
