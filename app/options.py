@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
 
@@ -22,6 +22,7 @@ class BenchWords(TypedDict):
     physics: str | None
     seed: int
     effects: tuple[str, ...]
+    plant: tuple[str, ...]
     real_time: bool
 
 
@@ -35,7 +36,7 @@ def profile_of(profile: str | Path | Profile | None, physics: str | None = None)
 
 
 def bench_options(command: F) -> F:
-    """`--port --profile --physics --seed --effect --real-time`: which bench."""
+    """`--port --profile --physics --seed --effect --plant --real-time`: which bench."""
     options = (
         click.option(
             "--port", metavar="PORT", help="Serial port, tcp:// or rtu+tcp://HOST:PORT.  [default: virtual valve]"
@@ -50,11 +51,44 @@ def bench_options(command: F) -> F:
             multiple=True,
             help="Imperfection of the virtual valve, stiction=0.4.",
         ),
+        click.option(
+            "--plant",
+            metavar="NAME=VALUE",
+            multiple=True,
+            help="Design number of the virtual valve, compliance=0.18; noise=0 for none.",
+        ),
         click.option("--real-time", is_flag=True, help="Let the virtual valve live in real time."),
     )
     for option in reversed(options):
         command = option(command)
     return command
+
+
+def plant_options(effects: Sequence[str] = (), plant: Sequence[str] = ()) -> dict[str, object]:
+    """The words of `--effect` and `--plant` as options of the virtual valve. Raises: `BadInput`."""
+    from hal.errors import BadInput
+
+    numbers = sizes(plant, "--plant", "compliance=0.18")
+    if "effects" in numbers:
+        raise BadInput("--plant takes design numbers, for example compliance=0.18; for imperfections there is --effect")
+    found = sizes(effects, "--effect", "stiction=0.4")
+    return {**numbers, **({"effects": found} if found else {})}
+
+
+def sizes(words: Sequence[str], option: str, example: str) -> dict[str, float]:
+    """`NAME=SIZE` words of an option. Raises: `BadInput` for a word of another form."""
+    from hal.errors import BadInput
+
+    found = {}
+    for word in words:
+        name, equals, size = word.partition("=")
+        try:
+            if not (name.strip() and equals):
+                raise ValueError
+            found[name.strip()] = float(size)
+        except ValueError as error:
+            raise BadInput(f"{option} {word!r} is not of the form NAME=SIZE, for example {example}") from error
+    return found
 
 
 def sealed_option(command: F) -> F:

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.options import profile_of
+from app.options import plant_options, profile_of
 
 if TYPE_CHECKING:
     from hal.clock import Clock
@@ -68,6 +68,7 @@ def open_bench(
     seed: int = 0,
     options: Mapping[str, object] | None = None,
     effects: Sequence[str] = (),
+    plant: Sequence[str] = (),
     real_time: bool = False,
     acknowledge: bool = False,
     sealed: str | None = None,
@@ -75,8 +76,9 @@ def open_bench(
 ) -> Iterator[Session]:
     """Opens the bench of a profile at `port`; without one, a virtual valve with plant `physics`.
 
-    `options` go to the plant (`effects={"stiction": 0.4}`, `noise=0.0`, its design numbers); `effects` are more of
-    them as words, "stiction=0.4". `sealed` draws plant and faults from a seed, out of `families`.
+    `options` go to the plant (`effects={"stiction": 0.4}`, `noise=0.0`, its design numbers); `effects` and `plant` are
+    more of them as words, "stiction=0.4" and "compliance=0.18". `sealed` draws plant and
+    faults from a seed, out of `families`.
     However the context is left, the valve is at its safe command and the port is closed.
     Raises: `BadInput`, `PortFault`, `WireFault`, `SafetyTrip`.
     """
@@ -84,21 +86,24 @@ def open_bench(
 
     found = profile_of(profile, physics)
     if port is not None:
-        if physics or options or real_time or effects or sealed:
+        if physics or options or real_time or effects or plant or sealed:
             raise BadInput(
-                "--physics, --effect, --sealed and --real-time belong to the virtual valve; leave them out with --port"
+                "--physics, --effect, --plant, --sealed and --real-time belong to the virtual valve; "
+                "leave them out with --port"
             )
         with _at_port(found, port, acknowledge) as session:
             yield session
         return
-    plant_options = {**(options or {}), **({"effects": _parse_effects(effects)} if effects else {})}
+    asked = {**(options or {}), **plant_options(effects, plant)}
     if sealed is not None:
-        if physics or plant_options:
-            raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics and --effect")
+        if physics or asked:
+            raise BadInput(
+                "--sealed draws the valve and what is wrong with it; leave out --physics, --effect and --plant"
+            )
         with _sealed(found, sealed, families, real_time) as session:
             yield session
         return
-    with _virtual(found, physics, seed, plant_options, real_time) as session:
+    with _virtual(found, physics, seed, asked, real_time) as session:
         yield session
 
 
@@ -117,21 +122,6 @@ def _at_port(profile: Profile, port: str, acknowledge: bool) -> Iterator[Session
     inner = ModbusBench(profile, port, clock, acknowledge=acknowledge, reopening=reopening)
     with SafeBench(inner, profile.limits, clock, latch=latch, deadman_s=DEADMAN_S) as bench:
         yield Session(bench, clock, profile, {})
-
-
-def _parse_effects(words: Sequence[str]) -> dict[str, float]:
-    from hal.errors import BadInput
-
-    found = {}
-    for word in words:
-        name, equals, size = word.partition("=")
-        try:
-            found[name.strip()] = float(size)
-        except ValueError as error:
-            raise BadInput(f"--effect {word!r} is not of the form NAME=SIZE, for example stiction=0.4") from error
-        if not (name.strip() and equals):
-            raise BadInput(f"--effect {word!r} is not of the form NAME=SIZE, for example stiction=0.4")
-    return found
 
 
 @contextmanager

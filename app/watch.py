@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from app.options import profile_of
+from app.options import plant_options, profile_of
 
 if TYPE_CHECKING:
     from hal.clock import Clock
@@ -26,6 +26,7 @@ def open_to_look(
     physics: str | None = None,
     seed: int = 0,
     effects: Sequence[str] = (),
+    plant: Sequence[str] = (),
     real_time: bool = True,
 ) -> Iterator[tuple[ModbusBench, Clock]]:
     """The bench of a profile at `port`; without one, a virtual valve, whose time may be stepped.
@@ -39,8 +40,8 @@ def open_to_look(
 
     found = profile_of(profile, physics)
     if port is not None:
-        if physics or effects:
-            raise BadInput("--physics and --effect belong to the virtual valve; leave them out with --port")
+        if physics or effects or plant:
+            raise BadInput("--physics, --effect and --plant belong to the virtual valve; leave them out with --port")
         clock: Clock = RealClock()
         reopening = Reopening(say=partial(click.echo, err=True))
         with ModbusBench(found, port, clock, read_only=True, reopening=reopening) as bench:
@@ -48,19 +49,19 @@ def open_to_look(
         return
     clock = RealClock() if real_time else SteppedClock()
     with (
-        _virtual(found, physics, seed, effects, clock) as device,
+        _virtual(found, physics, seed, plant_options(effects, plant), clock) as device,
         ModbusBench(found, device.port, clock, pacing="none", margin_s=2.0, read_only=True) as bench,
     ):
         yield bench, clock
 
 
-def _virtual(profile: Profile, physics: str | None, seed: int, effects: Sequence[str], clock: Clock) -> VirtualDevice:
-    from app.session import _parse_effects as parse_effects
+def _virtual(
+    profile: Profile, physics: str | None, seed: int, options: dict[str, object], clock: Clock
+) -> VirtualDevice:
     from app.slow import COMPILING, say_if_slow
     from sim_device.physics.catalog import make_physics
     from sim_device.server import VirtualDevice
 
-    options = {"effects": parse_effects(effects)} if effects else {}
     name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
     with say_if_slow(COMPILING):
         return VirtualDevice(profile, make_physics(name, seed, **options), clock)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from app.options import plant_options
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 @click.option("--profile", "profile_name", default="virtual", show_default=True, help="Profile name or .toml file.")
 @click.option("--physics", metavar="NAME", help="The valve behind the registers.  [default: what the profile commands]")
 @click.option("--effect", "effects", multiple=True, metavar="NAME=SIZE", help="Something wrong with the valve.")
+@click.option("--plant", multiple=True, metavar="NAME=VALUE", help="Design number of the valve, compliance=0.18.")
 @click.option("--time", "time_kind", type=click.Choice(["real", "stepped"]), default="real", show_default=True,
               help="Stepped: virtual time, moved by the master through the simulation registers.")  # fmt: skip
 @click.option("--fault", "faults", multiple=True, metavar="NAME=FRACTION",
@@ -49,6 +51,7 @@ def command(
     profile_name: str,
     physics: str | None,
     effects: tuple[str, ...],
+    plant: tuple[str, ...],
     time_kind: str,
     faults: tuple[str, ...],
     fault_timeout: float,
@@ -70,9 +73,9 @@ def command(
 
     profile = load_profile(profile_name)
     if sealed is not None:
-        valve, said = _sealed(sealed, commitment, bool(physics or effects))
+        valve, said = _sealed(sealed, commitment, bool(physics or effects or plant))
     else:
-        valve, said = _open(physics or _usual(profile.command_unit), effects, seed)
+        valve, said = _open(physics or _usual(profile.command_unit), plant_options(effects, plant), seed)
     bad, options = parse_faults(faults, seed=seed, timeout_s=fault_timeout), _options(refresh, time_kind)
     with say_if_slow(COMPILING):
         device = VirtualDevice(
@@ -89,7 +92,7 @@ def _sealed(seed: str, commitment: Path | None, chosen: bool) -> tuple[ValvePhys
     from sim_device.sealed import draw, write
 
     if chosen:
-        raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics and --effect")
+        raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics, --effect and --plant")
     drawn = draw(seed)
     if commitment is not None:
         write(commitment, drawn)
@@ -112,21 +115,13 @@ def _usual(command_unit: str) -> str:
     return "positioner" if command_unit == "percent" else "thesis"
 
 
-def _open(physics: str, effects: tuple[str, ...], seed: int) -> tuple[ValvePhysics, dict[str, str]]:
+def _open(physics: str, options: Mapping[str, object], seed: int) -> tuple[ValvePhysics, dict[str, str]]:
     """The valve as the operator wants it, and its name.
 
     Raises: `BadInput` for a plant, an effect or a size that does not exist.
     """
     from sim_device.physics.catalog import make_physics
 
-    sizes: dict[str, float] = {}
-    for text in effects:
-        name, _, size = text.partition("=")
-        try:
-            sizes[name] = float(size)
-        except ValueError:
-            raise BadInput(f"effect '{text}' has no size; write NAME=NUMBER, for example stiction=0.4") from None
-    options: dict[str, object] = {"effects": sizes} if sizes else {}
     return make_physics(physics, seed, **options), {"physics": physics}
 
 

@@ -51,7 +51,7 @@ def test_it_says_where_it_listens_answers_there_and_takes_its_link_away(tmp_path
         (["--fault", "rain=0.1"], "rain=0.1"),
         (["--tcp", "0.0.0.0:0"], "loopback"),
         (["--physics", "perpetuum"], "there is no physics 'perpetuum'"),
-        (["--effect", "stiction"], "NAME=NUMBER"),
+        (["--effect", "stiction"], "NAME=SIZE"),
         (["--profile", "nowhere.toml"], "nowhere.toml"),
         (["--tcp", "127.0.0.1:0", "--fault", "bit_flip=0.1"], "use a pseudo-terminal or rtu+tcp://"),
         (["--fault", "wrong_transaction=0.1"], "it needs Modbus TCP"),

@@ -43,7 +43,12 @@ def test_an_error_inside_leaves_the_valve_safe() -> None:
 def test_effects_and_numbers_reach_the_plant() -> None:
     with open_bench(effects=("stiction=0.4",), options={"a1": 9.0}) as session:
         assert session.virtual["options"] == {"a1": 9.0, "effects": {"stiction": 0.4}}
-    with pytest.raises(BadInput, match="NAME=SIZE"), open_bench(effects=("stiction=big",)):
+    with open_bench(effects=("stiction=0.4",), plant=("compliance=0.18", "noise=0")) as session:
+        assert session.virtual["options"] == {"compliance": 0.18, "noise": 0.0, "effects": {"stiction": 0.4}}
+    for wrong in ({"effects": ("stiction=big",)}, {"plant": ("a1",)}, {"plant": ("effects=1",)}, {"plant": ("a9=1",)}):
+        with pytest.raises(BadInput, match=r"NAME=SIZE|--effect|its numbers are"), open_bench(**wrong):
+            pass
+    with pytest.raises(BadInput, match="leave them out with --port"), open_bench("/dev/absent", plant=("a1=9",)):
         pass
 
 

@@ -50,7 +50,7 @@ def test_a_diagnosis_that_is_none_is_refused(run: Path) -> None:
 
 def test_emulate_sealed_takes_no_effect_besides() -> None:
     result = CliRunner().invoke(emulate, ["--sealed", "plum", "--effect", "creep=0.1"])
-    assert "leave out --physics and --effect" in str(result.exception)
+    assert "leave out --physics, --effect and --plant" in str(result.exception)
 
 
 def test_emulate_sealed_commits_before_it_listens_and_tells_nothing(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ NUMBERS = ["deadband", "offset", "compliance", "tau", "rate_limit", "ep_tau"]
 
 
 def test_the_plants_are_found_as_files() -> None:
-    assert names() == ["positioner", "reference", "thesis"]
+    assert names() == ["chapter3", "positioner", "reference", "thesis"]
 
 
 @pytest.mark.parametrize("plant", ["thesis", "reference"])
@@ -62,6 +62,20 @@ def test_the_first_call_sets_the_origin_and_time_never_runs_back(plant: str) -> 
     assert valve.advance(1.0e6 + 20.0, 4.0).position_in == pytest.approx(later.position_in, abs=1e-9)
 
 
+def test_the_bench_of_chapter_3_is_the_thesis_valve_with_a_converter_that_does_not_let_all_air_out() -> None:
+    time_s = 0.1 * np.arange(1200.0)
+    command = np.where(time_s < 60.0, 11.0, 9.0)
+    pressure, _ = record(make_physics("chapter3", noise=0.0), time_s, command)
+    assert pressure[500] == pytest.approx(11.0, abs=1e-3)
+    assert pressure[-1] == pytest.approx(9.07, abs=1e-3)
+    options = {"effects": {"ep_deadband": 0.0, "ep_calibration/zero": 0.0}, "compliance": 0.19}
+    plain = [
+        record(make_physics("thesis", 5), time_s, command),
+        record(make_physics("chapter3", 5, **options), time_s, command),
+    ]
+    assert np.array_equal(*plain)
+
+
 @pytest.mark.parametrize("plant", ["thesis", "reference"])
 def test_what_the_valve_does_hardly_depends_on_how_often_it_is_asked(plant: str) -> None:
     def position(step_s: float) -> float:
@@ -77,7 +91,7 @@ def test_what_the_valve_does_hardly_depends_on_how_often_it_is_asked(plant: str)
 @pytest.mark.parametrize(
     ("plant", "options", "words"),
     [
-        ("piano", {}, "there is no physics 'piano'; choose one of positioner, reference, thesis"),
+        ("piano", {}, "there is no physics 'piano'; choose one of chapter3, positioner, reference, thesis"),
         ("thesis", {"effects": {"rust": 1.0}}, "effect 'rust' is not known"),
         ("thesis", {"effects": {"creep/sideways": 0.1}}, "no form 'sideways'; it has two, one, log"),
         ("thesis", {"effects": {"creep": 7.0}}, "size 7.0 1 is outside 0 to 0.6 1"),
