@@ -61,8 +61,11 @@ class BacklashCurves:
     notes: tuple[str, ...] = ()
 
 
-def find_dwells(recording: Recording) -> Dwells:
-    """The stays of at least 2 s during which the command did not change; pressure is the command where not measured."""
+def find_dwells(recording: Recording, longest_s: float = np.inf) -> Dwells:
+    """The stays of at least 2 s during which the command did not change; pressure is the command where not measured.
+
+    Of a stay longer than `longest_s` only that much is looked at.
+    """
     command, time_s = recording.command, recording.time_s
     broken = np.zeros(recording.n, dtype=bool) if recording.gap_before is None else recording.gap_before.copy()
     tolerance = 1e-6 * (float(np.ptp(command)) + 1e-12)
@@ -71,10 +74,11 @@ def find_dwells(recording: Recording) -> Dwells:
     pressure = command if recording.pressure is None else recording.pressure
     rows: list[tuple[float, ...]] = []
     last, unbroken = np.nan, True
-    for start, stop in pairwise(edges):
+    for start, end in pairwise(edges):
         unbroken = unbroken and not broken[start]
-        if time_s[stop - 1] - time_s[start] < LEAST_DWELL_S:
+        if time_s[end - 1] - time_s[start] < LEAST_DWELL_S:
             continue
+        stop = int(np.searchsorted(time_s[:end], time_s[start] + longest_s, side="right"))
         begin = int(np.searchsorted(time_s[:stop], time_s[stop - 1] - TAIL_SHARE * (time_s[stop - 1] - time_s[start])))
         x, p = recording.position[begin:stop], pressure[begin:stop]
         if np.isfinite(x).sum() < 2 or np.isfinite(p).sum() < 2:
@@ -109,8 +113,7 @@ def at_rest(dwells: Dwells, settling: Settling) -> FloatArray:
     """Where the stem would have come to rest, shape (m,), when its lag was still at work in the tails."""
     tau_s = settling.tau_s
     begin, end = np.maximum(dwells.tail_s - settling.waits_s(dwells.moved)[:, None], 0.0).T
-    reach = np.maximum(end - begin, 1e-9)
-    left = tau_s * (np.exp(-begin / tau_s) - np.exp(-end / tau_s)) / reach
+    left = np.exp(-0.5 * (begin + end) / tau_s)  # `position` is a median, and the stem is there half-way through
     moved = np.where(np.isfinite(dwells.moved), dwells.moved, 0.0)
     return np.asarray(dwells.position + moved * left / (1.0 - np.minimum(left, 0.9)))
 

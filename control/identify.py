@@ -17,10 +17,11 @@ from control.identify_kept import Facts, settle_numbers
 from control.identify_pressure import PressureStage
 from control.identify_readings import fast_noise
 from control.identify_result import Estimate, Identified, quality_of
+from control.identify_slopes import slopes
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
 from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
-from control.identify_valve import Freedom, Track, ValveFit, fit_valve, refit_separate
+from control.identify_valve import Track, ValveFit, fit_valve
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording
 
@@ -52,7 +53,12 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     spread, freedom_rows = spread_of(tracks, fit, freedom)
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
     _check_found(estimates, recordings)
-    estimates += _slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design)
+    estimates += slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design, notes)
+    if design.a1 < 0.0:
+        notes.append(
+            f"with a1 = {design.a1:.4g} {unit_p} the stem would close without any pressure: is the command a position, "
+            "told to a positioner? Then this is no open-loop record, and none of these numbers is the valve's"
+        )
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
     position = np.concatenate([t.position[t.good] for t in tracks])
@@ -87,6 +93,11 @@ def _check(recordings: Sequence[Recording]) -> None:
         raise BadInput("no recording to identify from; name at least one run or file")
     first = recordings[0]
     for each in recordings:
+        if each.meta.get("positioner"):
+            raise BadInput(
+                f"{each.name}: its commands are positions for a positioner, whose pressure is its own affair: "
+                "a1, a2 and the lags of the valve do not show; identify from a record whose commands are pressures"
+            )
         if (each.pressure_unit, each.position_unit) != (first.pressure_unit, first.position_unit):
             raise BadInput(
                 f"{each.name} is in {each.pressure_unit} and {each.position_unit}, {first.name} in "
@@ -142,23 +153,6 @@ def _check_found(estimates: Sequence[Estimate], recordings: Sequence[Recording])
         )
 
 
-def _slopes(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom, unit: str, design: DesignModel) -> list[Estimate]:
-    """k1 and k2 from a fit that lets them differ, and the thesis's k_eq, their mean."""
-    found, separate = refit_separate(tracks, fit, freedom)
-    spread, rows = spread_of(tracks, found, separate)
-    k1, k2 = float(found.numbers[2]), float(found.numbers[3])
-    both = spread[2:4, 2:4]
-    reach = _student(rows) * np.sqrt([both[0, 0], both[1, 1], 0.25 * both.sum()])
-    values = {"k1": k1, "k2": k2, "k_eq": 0.5 * (k1 + k2)}
-    estimates = []
-    for (name, value), half in zip(values.items(), reach, strict=True):
-        known = bool(np.isfinite(half) and half < 0.5 * value)
-        interval = Interval(value, value - float(half), value + float(half)) if known else None
-        kept = Estimate(name, design.compliance, None, unit, "kept", "its curve is not in the record")
-        estimates.append(Estimate(name, value, interval, unit, "fit") if known else kept)
-    return estimates
-
-
 def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[str]) -> list[Estimate]:
     """What steady dwells and the 63 % rule say, for comparison with the fit."""
     unit_p, unit_x = design.pressure_unit, design.position_unit
@@ -188,9 +182,3 @@ def _say_zero(
         zero = float(np.median(residual[open_rows]))
         if abs(zero) > 0.005 * design.travel:
             notes.append(f"fully open it reads {zero:+.4f} {design.position_unit}, not 0: check the LVDT's zero")
-
-
-def _student(freedom: int) -> float:
-    from scipy.stats import t as student
-
-    return float(student.ppf(0.975, freedom))

@@ -20,6 +20,10 @@ SHARE = 1.0 - math.exp(-1.0)
 NOISES = 15.0  # a step must be so many times larger than the noise
 WINDOW = (0.15, 0.6)  # the part of the step that is left: within it the rest falls exponentially
 FEWEST_STEPS = 3
+# Where a step ends is read so many time constants after it at the latest. A converter is never quite still, and a stem
+# in a play follows the highest pressure yet and does not come back: what it creeps later is not the step's.
+LATEST_TAUS = 4.5
+BEFORE_TAUS = 0.3  # the readings just before a step, averaged: where it begins, settled or not
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +43,7 @@ def time_constant_63(recordings: list[Recording], settling: Settling, travel: fl
     found: list[float] = []
     for recording in recordings:
         dwells = find_dwells(recording)
-        found += _times(recording, dwells, settling, min(0.6 * settling.rate_limit * settling.tau_s, 0.5 * travel))
+        found += _times(recording, dwells, settling, travel)
     raw_s = np.array(found)
     if raw_s.size < FEWEST_STEPS:
         return StepTimes(raw_s, None)
@@ -50,19 +54,23 @@ def time_constant_63(recordings: list[Recording], settling: Settling, travel: fl
     return StepTimes(raw_s, Interval(float(np.median(each)), float(each[low]), float(each[high])))
 
 
-def _times(recording: Recording, dwells: Dwells, settling: Settling, largest: float) -> list[float]:
+def _times(recording: Recording, dwells: Dwells, settling: Settling, travel: float) -> list[float]:
     tau_s, ep_tau_s = settling.tau_s, settling.delay_s
-    noise = fast_noise(recording.position)
-    ends = at_rest(dwells, settling)
+    least = max(NOISES * fast_noise(recording.position), 0.01 * travel)
+    largest = min(0.6 * settling.rate_limit * tau_s, 0.5 * travel)
+    ends = at_rest(find_dwells(recording, settling.delay_s + LATEST_TAUS * tau_s), settling)
     times = []
     for i in range(2, dwells.command.size):
-        step = ends[i] - ends[i - 1]
-        on_curve = dwells.moved[i - 1] * step > 0.0 and abs(dwells.moved[i - 1]) > 4.0 * noise
-        if not on_curve or not NOISES * noise < abs(step) < largest:
+        start_s = dwells.start_s[i]
+        before = (recording.time_s > start_s - BEFORE_TAUS * tau_s) & (recording.time_s <= start_s)
+        if not np.isfinite(recording.position[before]).any():
+            continue
+        step = ends[i] - float(np.nanmean(recording.position[before]))
+        on_curve = dwells.moved[i - 1] * step > 0.0 and abs(dwells.moved[i - 1]) > 0.25 * least
+        if not on_curve or not least < abs(step) < largest:
             continue
         if dwells.tail_s[i, 1] < 4.0 * tau_s or dwells.tail_s[i - 1, 1] < 4.0 * tau_s:
             continue
-        start_s = dwells.start_s[i]
         rows = (recording.time_s >= start_s) & (recording.time_s <= start_s + dwells.tail_s[i, 1])
         elapsed_s = recording.time_s[rows] - start_s
         left = (ends[i] - recording.position[rows]) / step
@@ -84,15 +92,24 @@ def _crossing(elapsed_s: FloatArray, left: FloatArray) -> float | None:
     return float(crossed) if crossed > 0.0 else None
 
 
+def together(tau_s: float, ep_tau_s: float) -> float:
+    """When a lag of `tau_s` behind a shorter one of `ep_tau_s` reaches 63 % of a step [s]; inverse of `without_lag`."""
+    from scipy.optimize import brentq
+
+    return float(brentq(lambda time_s: _left(time_s, tau_s, ep_tau_s) - (1.0 - SHARE), tau_s, tau_s + 3.0 * ep_tau_s))
+
+
 def without_lag(time_63_s: float, ep_tau_s: float) -> float:
     """The time constant of a lag that, behind one of `ep_tau_s`, reaches 63 % of a step after `time_63_s`."""
     from scipy.optimize import brentq
 
     if ep_tau_s <= 1e-6 * time_63_s or time_63_s <= 2.2 * ep_tau_s:
         return time_63_s
+    found = brentq(lambda tau_s: _left(time_63_s, tau_s, ep_tau_s) - (1.0 - SHARE), 1.0001 * ep_tau_s, time_63_s)
+    return float(found)
 
-    def miss(tau_s: float) -> float:
-        slow = tau_s * math.exp(-time_63_s / tau_s) - ep_tau_s * math.exp(-time_63_s / ep_tau_s)
-        return 1.0 - slow / (tau_s - ep_tau_s) - SHARE
 
-    return float(brentq(miss, 1.0001 * ep_tau_s, time_63_s))
+def _left(time_s: float, tau_s: float, ep_tau_s: float) -> float:
+    """The share of a step that two lags in a row have left to go."""
+    slow = tau_s * math.exp(-time_s / tau_s) - ep_tau_s * math.exp(-time_s / ep_tau_s)
+    return slow / (tau_s - ep_tau_s)

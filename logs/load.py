@@ -61,7 +61,15 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
         quality={name: run.columns[name] for name in names if name == "quality" or name.endswith("_quality")},
         notes=notes,
     )
-    meta = {"run": run.start, "status": run.status, "reason": run.reason, "problems": run.problems}
+    # A positioner is told a position in percent; a converter on a bench of this house is told a pressure.
+    positioner = plain_name(stated["command"]) == PERCENT
+    meta = {
+        "positioner": positioner,
+        "run": run.start,
+        "status": run.status,
+        "reason": run.reason,
+        "problems": run.problems,
+    }
     return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)
 
 

@@ -28,9 +28,16 @@ if TYPE_CHECKING:
     show_default=True,
     help="Which interval a row's command belongs to.",
 )
+@click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw record, model and residual.")
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def command(
-    runs: tuple[Path, ...], out: Path, mapping: str | None, units: str | None, command_timing: str, as_json: bool
+    runs: tuple[Path, ...],
+    out: Path,
+    mapping: str | None,
+    units: str | None,
+    command_timing: str,
+    plot: Path | None,
+    as_json: bool,
 ) -> None:
     from control.design import save_design
     from control.identify import identify
@@ -39,6 +46,10 @@ def command(
 
     if out.suffix != ".toml":
         raise BadInput(f"--out {out}: a model file ends in .toml")
+    if plot is not None:
+        from app.fit_picture import check_target
+
+        check_target(plot)
     timing: object = command_timing
     recordings = [
         load_recording(path, mapping=mapping, units=units, command_timing=timing)  # type: ignore[arg-type]
@@ -50,10 +61,22 @@ def command(
         save_design(found.design, out, comment=_comment(found))
     except OSError as error:
         raise BadInput(f"{out}: the model cannot be written ({error.strerror}); name another file") from error
+    if plot is not None:
+        _draw(found, recordings, plot)
     if as_json:
         click.echo(json.dumps({**found.to_plain(), "model": str(out)}))
     else:
         _print(found, recordings, out)
+
+
+def _draw(found: Identified, recordings: list[Recording], plot: Path) -> None:
+    from app.fit_picture import Replay, draw
+    from twin.insert import plant_of
+    from twin.simulate import simulate_recording
+
+    plant = plant_of(found.design)
+    replays = [Replay(each, simulate_recording(plant, each)[1]) for each in recordings]
+    draw(plot, replays, found.design, curves=True)
 
 
 def _comment(found: Identified) -> str:

@@ -25,16 +25,27 @@ if TYPE_CHECKING:
 @click.option("--units", metavar="command=kPa,...", help="Units of the columns of a foreign file.")
 @click.option("--command-timing", type=click.Choice(["before", "after", "unknown"]), default="before",
               show_default=True, help="Whether a row's command was in force before or after its readings.")  # fmt: skip
+@click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw record, model and residual.")
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 def command(
-    model: Path, run: Path, out: Path, mapping: str | None, units: str | None, command_timing: str, as_json: bool
+    model: Path,
+    run: Path,
+    out: Path,
+    mapping: str | None,
+    units: str | None,
+    command_timing: str,
+    plot: Path | None,
+    as_json: bool,
 ) -> None:
+    from app.fit_picture import Replay, check_target, draw
     from control.design import load_design
     from logs.load import load_recording
     from twin.insert import plant_of
     from twin.model_units import in_units_of
     from twin.simulate import simulate_recording
 
+    if plot is not None:
+        check_target(plot)
     design = load_design(model)
     timing = cast("CommandTiming", command_timing)
     recording = load_recording(run, mapping=mapping, units=units, command_timing=timing)
@@ -44,6 +55,8 @@ def command(
         raise BadInput(f"{model}: {error}") from error
     pressure, position = simulate_recording(plant, recording)
     _write(out, recording, pressure, position)
+    if plot is not None:
+        draw(plot, [Replay(recording, position)], plant.design, curves=False)
     figures = _figures(recording, plant.design.travel, pressure, position)
     if as_json:
         click.echo(json.dumps({"file": str(out), "model": str(plant), **figures}))
@@ -59,11 +72,14 @@ def _figures(
     recording: Recording, travel: float, pressure: FloatArray, position: FloatArray
 ) -> dict[str, float | int | None]:
     """RMS differences model against record; None where the record has no such readings."""
+    from app.fit_picture import fit_percent
+
     rms = _rms(recording.position, position)
     return {
         "rows": recording.n,
         "position_rms": rms,
         "position_rms_percent_of_travel": None if rms is None else 100.0 * rms / travel,
+        "fit_percent": fit_percent(recording.position, position),
         "pressure_rms": None if recording.pressure is None else _rms(recording.pressure, pressure),
         "gaps": 0 if recording.gap_before is None else int(recording.gap_before.sum()),
     }
@@ -81,7 +97,8 @@ def _sentence(recording: Recording, figures: dict[str, float | int | None]) -> s
     if figures["position_rms"] is not None:
         parts.append(
             f"position {figures['position_rms']:.4g} {recording.position_unit} "
-            f"({figures['position_rms_percent_of_travel']:.3g} % of travel)"
+            f"({figures['position_rms_percent_of_travel']:.3g} % of travel"
+            + (")" if figures["fit_percent"] is None else f", fit {figures['fit_percent']:.2f} %)")
         )
     if figures["pressure_rms"] is not None:
         parts.append(f"pressure {figures['pressure_rms']:.3g} {recording.pressure_unit}")

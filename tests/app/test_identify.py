@@ -37,6 +37,7 @@ def test_a_sweep_over_modbus_gives_the_truth(
     assert estimates["a1 (curves)"]["value"] == pytest.approx(8.78, abs=0.02)
     assert estimates["a2 (curves)"]["value"] == pytest.approx(5.82, abs=0.02)
     assert estimates["tau (63 %)"]["value"] == pytest.approx(2.7, rel=0.03)
+    assert estimates["tau (63 %)"]["ci95"][0] <= 2.7 <= estimates["tau (63 %)"]["ci95"][1]
     design = load_design(tmp_path / "m.toml")
     assert (design.a1, design.a2, design.tau_s) == pytest.approx((8.78, 5.82, 2.7), rel=0.01)
 
@@ -85,3 +86,20 @@ def test_bad_input_is_one_sentence(
     assert run(["identify", *words]) == code
     assert sentence in capsys.readouterr().err
     assert not Path("m.toml").exists()
+
+
+def test_record_model_and_what_is_left_are_drawn(staircase: Path, tmp_path: Path) -> None:
+    picture = tmp_path / "fit.svg"
+    words = [str(staircase), "--out", str(tmp_path / "m.toml"), "--json"]
+    assert run(["identify", *words, "--plot", str(picture)]) == 0
+    assert picture.stat().st_size > 10_000
+    assert run(["identify", *words, "--plot", str(tmp_path / "fit.docx")]) == 2
+
+
+def test_a_positioners_record_is_refused(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    record = str(tmp_path / "r")
+    short = ["--set", "step=25", "--set", "dwell_s=5", "--set", "conditioning_s=5"]
+    assert run(["sweep", "staircase", "--physics", "positioner", *short, "--out", record]) == 0
+    assert run(["identify", record, "--out", str(tmp_path / "m.toml")]) == 2
+    assert "positions for a positioner" in capsys.readouterr().err
+    assert not (tmp_path / "m.toml").exists()

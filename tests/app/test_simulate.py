@@ -43,6 +43,21 @@ def test_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert answer["position_rms"] == pytest.approx(0.0, abs=1e-12)  # it sticks, as recorded
     assert answer["pressure_rms"] is None
     assert answer["rows"] == 200
+    assert answer["fit_percent"] is None  # nothing varies in a record of a stem at rest
+
+
+def test_the_fit_is_printed_and_drawn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    model, record, out = write_inputs(tmp_path)
+    assert run(["simulate", model, record, "--out", out]) == 0
+    capsys.readouterr()
+    own, again = str(tmp_path / "own.csv"), Path(out).rename(tmp_path / "again.csv")  # the model's own readings
+    assert run(["simulate", model, str(again), "--out", own, "--plot", str(tmp_path / "p.png"), "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["fit_percent"] == pytest.approx(100.0, abs=0.01)
+    assert run(["simulate", model, str(again), "--out", own]) == 0
+    assert "% of travel, fit 100.00 %)" in capsys.readouterr().out
+    assert (tmp_path / "p.png").stat().st_size > 10_000
+    assert run(["simulate", model, record, "--out", out, "--plot", str(tmp_path / "no" / "p.png")]) == 2
+    assert "there is no folder" in capsys.readouterr().err
 
 
 def test_bad_model_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
