@@ -54,11 +54,6 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
     _check_found(estimates, recordings)
     estimates += slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design, notes)
-    if design.a1 < 0.0:
-        notes.append(
-            f"with a1 = {design.a1:.4g} {unit_p} the stem would close without any pressure: is the command a position, "
-            "told to a positioner? Then this is no open-loop record, and none of these numbers is the valve's"
-        )
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
     position = np.concatenate([t.position[t.good] for t in tracks])
@@ -175,7 +170,12 @@ def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[st
 def _say_zero(
     residual: FloatArray, tracks: Sequence[Track], fit: ValveFit, design: DesignModel, notes: list[str]
 ) -> None:
-    """A reading that is off at the open stop moves both curves; the design model cannot say so, this can."""
+    """What the design model cannot say: a reading that is off at the open stop, a stem that needs no pressure."""
+    if design.a1 < 0.0:
+        notes.append(
+            f"with a1 = {design.a1:.4g} {design.pressure_unit} the stem would close without any pressure: is the "
+            "command a position, told to a positioner? Then this is no open-loop record, and no number is the valve's"
+        )
     predicted = np.concatenate([x[t.good] for t, x in zip(tracks, fit.predict(tracks), strict=True)])
     open_rows = predicted <= 1e-6 * design.travel
     if open_rows.sum() >= FEWEST_ROWS:

@@ -77,13 +77,13 @@ def _times(recording: Recording, dwells: Dwells, settling: Settling, travel: flo
         # Rows are chosen by when they should lie there: choosing them by their noisy value would bend the line.
         expected = np.exp(-np.maximum(elapsed_s - ep_tau_s, 0.0) / tau_s)
         near = (expected > WINDOW[0]) & (expected < WINDOW[1]) & (left > 0.0)
-        crossed = _crossing(elapsed_s[near], left[near])
+        crossed = crossing_s(elapsed_s[near], left[near])
         if crossed is not None:
             times.append(crossed)
     return times
 
 
-def _crossing(elapsed_s: FloatArray, left: FloatArray) -> float | None:
+def crossing_s(elapsed_s: FloatArray, left: FloatArray) -> float | None:
     """When the share of a step that is left, `left`, falls to 1/e, by a line through its logarithm; None if never."""
     if elapsed_s.size < 2 or np.ptp(elapsed_s) <= 0.0:
         return None

@@ -26,7 +26,7 @@ def commands_in(page: Path) -> set[tuple[str, ...]]:
     """Words of every `lostmotion ...` on the page: inline code and blocks alike."""
     text = re.sub(r"`([^`\n]+)\n([^`\n]+)`", r"`\1 \2`", text_of(page))
     found = re.findall(r"(?:^ {4}|`|^\$ )(?:\.venv/bin/)?lostmotion ([^`\n#]+)", text, re.MULTILINE)
-    return {tuple(line.split()) for line in found}
+    return {tuple(part.split()) for line in found for part in line.split(" && lostmotion ")}
 
 
 @pytest.mark.parametrize("page", PAGES, ids=IDS)

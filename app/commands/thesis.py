@@ -15,19 +15,16 @@ import click
 def command(keys: tuple[str, ...], plot: Path | None, as_json: bool) -> None:
     """Compute single figures and numbers of the thesis on the virtual valve.
 
-    KEY is the number of a figure (1-2, 3-10), `beyond` or `rivals`; without one, the keys are listed.
+    KEY is the number of a figure (1-2, 3-10), `beyond`, `brake` or `rivals`; without one, the keys are listed. `brake`
+    and `rivals` take minutes, the others seconds.
     """
     from app.gallery import figure, page
-    from app.gallery.index import KEYS, make
-    from hal.errors import BadInput
+    from app.gallery.index import KEYS, checked, make
 
-    for key in keys:
-        if key not in KEYS:
-            raise BadInput(f"the gallery has no item {key!r}; it has {', '.join(KEYS)}")
     if not keys:
         click.echo(" ".join(KEYS))
         return
-    made = [make(key) for key in keys]
+    made = [make(key) for key in checked(keys)]
     for entry in made:
         if plot is not None:
             figure.save(entry, plot)

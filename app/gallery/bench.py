@@ -1,8 +1,10 @@
-"""The bench of chapter 3, whose imperfections the thesis's observations emerge from, and how its trials are shown."""
+"""The bench of chapter 3 (`--physics chapter3`), trials on it, and the commands that repeat them."""
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,30 +22,48 @@ if TYPE_CHECKING:
 DESIGN = DesignModel()
 STEPS = (25.0, 50.0, 75.0, 100.0, 75.0, 50.0, 25.0, 0.0)
 HOLD_S = 90.0
-# The converter stops 0.07 psi above its set point when it lets air out (a hysteresis that was calibrated away for
-# filling), and the springs are 5 % stiffer than table 2-1 says.
-RELIEVING: Mapping[str, float] = {"ep_deadband/play": 0.07, "ep_calibration/zero": 0.035}
-NUMBERS: Mapping[str, float] = {"compliance": 0.18}
+PERIOD_S = 0.1
+SEED = 1
+# Three standard deviations of a reading: what a rule that cannot see it should leave alone.
+TOLERANCE_IN = 0.0018
 
 
-def trial(
-    name: str,
-    steps: Sequence[float] = STEPS,
-    hold_s: float = HOLD_S,
-    *,
-    plain: bool = False,
-    seed: int = 1,
-    **settings: float,
-) -> Trace:
-    """A controller through steps in percent of travel, on the bench of chapter 3, or on a valve as designed."""
-    targets = np.repeat(np.asarray(steps) * DESIGN.travel / 100.0, round(hold_s * 10))
-    opened = open_virtual(seed) if plain else open_virtual(seed, effects=RELIEVING, numbers=NUMBERS)
-    return run_trial(opened, make_controller(name, DESIGN, **settings), targets, 0.1, start_psi=5.0)
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A controller through steps in percent of travel, as `lostmotion run` does it from a vented valve.
+
+    The trial has no wire, for speed; `command` does the same over Modbus.
+    """
+
+    controller: str
+    settings: Mapping[str, float] = field(default_factory=dict)
+    steps: Sequence[float] = STEPS
+    hold_s: float = HOLD_S
+    physics: str = "chapter3"
+
+    def trial(self, seed: int = SEED) -> Trace:
+        """The trial, with the true stem."""
+        targets = np.repeat(np.asarray(self.steps) * DESIGN.travel / 100.0, round(self.hold_s / PERIOD_S))
+        controller = make_controller(self.controller, DESIGN, **self.settings)
+        return run_trial(open_virtual(seed, name=self.physics), controller, targets, PERIOD_S)
+
+    def tails(self, seed: int = SEED) -> FloatArray:
+        """The errors in the last third of every hold of a trial."""
+        return tails(self.trial(seed), self.hold_s)
+
+    def command(self, seed: int = SEED) -> str:
+        """What to type for the same over Modbus."""
+        targets = ",".join(f"{step * DESIGN.travel / 100.0:.6g}" for step in self.steps)
+        words = ["lostmotion", "run", "--controller", self.controller, "--targets", targets]
+        words += ["--hold", f"{self.hold_s:g}", "--physics", self.physics, "--seed", str(seed)]
+        for key, value in self.settings.items():
+            words += ["--set", f"{key}={value:g}"]
+        return shlex.join(words)
 
 
 def tails(trace: Trace, hold_s: float = HOLD_S) -> FloatArray:
     """The errors in the last third of every hold, shape (holds, rows) [% of travel]."""
-    n = round(hold_s * 10)
+    n = round(hold_s / PERIOD_S)
     error = 100.0 * (trace.truth_in - trace.target_in) / DESIGN.travel
     return np.asarray(error.reshape(-1, n)[:, -n // 3 :])
 
@@ -51,18 +71,27 @@ def tails(trace: Trace, hold_s: float = HOLD_S) -> FloatArray:
 def response(trace: Trace, canvas: Canvas) -> None:
     """Target and stem over time, pressure below."""
     upper, lower = canvas.subplots(2, 1, sharex=True, height_ratios=(2, 1))
-    upper.plot(trace.time_s, 100.0 * trace.target_in / DESIGN.travel, color=GREY, lw=1.0, label="target")
-    upper.plot(trace.time_s, 100.0 * trace.truth_in / DESIGN.travel, color=BLUE, lw=1.0, label="stem")
-    upper.set_ylabel("position [%]")
+    stem(trace, upper)
     upper.legend(frameon=False, loc="upper left", fontsize=8)
     lower.plot(trace.time_s, trace.pressure_psi, color=ORANGE, lw=0.8)
     lower.set(xlabel="time [s]", ylabel="pressure [psi]")
 
 
-def swing(tail: FloatArray) -> float:
+def stem(trace: Trace, axes) -> None:  # type: ignore[no-untyped-def]
+    """Target and stem over time."""
+    axes.plot(trace.time_s, 100.0 * trace.target_in / DESIGN.travel, color=GREY, lw=1.0, label="target")
+    axes.plot(trace.time_s, 100.0 * trace.truth_in / DESIGN.travel, color=BLUE, lw=1.0, label="stem")
+    axes.set_ylabel("position [%]")
+
+
+def swing(tail: FloatArray, steps: Sequence[float] = STEPS) -> float:
     """The largest peak to peak of a hold that does not end at a stop [%]."""
-    inner = [row for row, step in zip(tail, STEPS, strict=True) if 0.0 < step < 100.0]
-    return float(max(np.ptp(row) for row in inner))
+    return float(max(np.ptp(row) for row in inner(tail, steps)))
+
+
+def inner(tail: FloatArray, steps: Sequence[float] = STEPS) -> list[FloatArray]:
+    """The holds that do not end at a stop."""
+    return [row for row, step in zip(tail, steps, strict=True) if 0.0 < step < 100.0]
 
 
 def first_move(trace: Trace, row: int) -> int:

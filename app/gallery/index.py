@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from importlib import import_module
 
 from app.gallery.figure import Entry
+from hal.errors import BadInput
 
 _FIGURES = {
     "1-2": "characterization",
     "1-5": "characterization",
     "1-6": "characterization",
     "2-3": "diagrams",
-    "2-4": "characterization",
-    "2-5": "characterization",
+    "2-4": "models",
+    "2-5": "models",
     "2-6": "diagrams",
-    "2-7": "characterization",
+    "2-7": "models",
     "2-8": "nyquist",
     "3-1": "diagrams",
     "3-2": "controllers",
@@ -30,6 +32,14 @@ _FIGURES = {
     "rivals": "rivals",
 }
 KEYS = tuple(_FIGURES)
+
+
+def checked(keys: Sequence[str]) -> tuple[str, ...]:
+    """These keys in the order of the page, or all of them for none. Raises: `BadInput` for one that is not there."""
+    for key in keys:
+        if key not in KEYS:
+            raise BadInput(f"the gallery has no item {key!r}; it has {', '.join(KEYS)}")
+    return tuple(key for key in KEYS if key in keys or not keys)
 
 
 def make(key: str) -> Entry:

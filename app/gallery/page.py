@@ -1,30 +1,46 @@
-"""docs/thesis.md and docs/thesis.json: the thesis line by line next to ours, and the check that they are not stale."""
+"""docs/thesis.md and docs/thesis.json: the thesis line by line next to ours; items are written anew one by one."""
 
 from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from app.gallery.figure import Entry, Number, save
-from app.gallery.index import KEYS, make
+from app.gallery.index import KEYS
 from hal.errors import JobFailed
 
 INTRODUCTION = Path(__file__).parent / "introduction.md"
 
 
-def entries() -> Iterator[Entry]:
-    """Every item of the gallery, computed now."""
-    yield from map(make, KEYS)
-
-
 def write(folder: Path, made: Sequence[Entry]) -> None:
-    """Writes thesis.md, thesis.json and the pictures below `folder`."""
+    """Writes these items, with their pictures, into thesis.md and thesis.json below `folder`; the others stay."""
     for entry in made:
         save(entry, folder / "pictures")
-    (folder / "thesis.json").write_text(json.dumps(stored(made), indent=1) + "\n", encoding="utf-8")
-    (folder / "thesis.md").write_text(page(made), encoding="utf-8")
+    numbers = {**(stored_numbers(folder) if (folder / "thesis.json").is_file() else {}), **stored(made)}
+    texts = {**sections(folder), **{entry.key: section(entry) for entry in made}}
+    in_order = {key: numbers[key] for key in KEYS if key in numbers}
+    (folder / "thesis.json").write_text(json.dumps(in_order, indent=1) + "\n", encoding="utf-8")
+    page = [INTRODUCTION.read_text(encoding="utf-8"), *(texts[key] for key in KEYS if key in texts)]
+    (folder / "thesis.md").write_text("\n".join(page), encoding="utf-8")
+
+
+def sections(folder: Path) -> dict[str, str]:
+    """The items of the stored page, each from its heading to the next; found by their pictures."""
+    path = folder / "thesis.md"
+    parts = path.read_text(encoding="utf-8").split("\n## ")[1:] if path.is_file() else []
+    return {key: f"## {part}" for part in parts for key in KEYS if f"(pictures/thesis-{key}.png)" in part}
+
+
+def stored_numbers(folder: Path) -> Mapping[str, Mapping[str, float | None]]:
+    """The numbers of thesis.json by item and label. Raises: `JobFailed` when it cannot be read."""
+    path = folder / "thesis.json"
+    try:
+        found: Mapping[str, Mapping[str, float | None]] = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise JobFailed(f"{path}: cannot be read ({error}); run `lostmotion gallery`") from error
+    return found
 
 
 def stored(made: Sequence[Entry]) -> dict[str, dict[str, float | None]]:
@@ -32,12 +48,8 @@ def stored(made: Sequence[Entry]) -> dict[str, dict[str, float | None]]:
     return {e.key: {n.label: n.ours if math.isfinite(n.ours) else None for n in e.numbers} for e in made if e.numbers}
 
 
-def page(made: Sequence[Entry]) -> str:
-    """The Markdown text."""
-    return "\n".join([INTRODUCTION.read_text(encoding="utf-8"), *(_section(entry) for entry in made)])
-
-
-def _section(entry: Entry) -> str:
+def section(entry: Entry) -> str:
+    """The Markdown text of one item."""
     lines = [f"## {entry.title}", ""]
     if entry.said:
         lines += [f"*Thesis:* {entry.said}", ""]
@@ -46,10 +58,15 @@ def _section(entry: Entry) -> str:
     if entry.draw is not None:
         lines += [f"![{entry.title}](pictures/{entry.picture})", ""]
     if entry.numbers:
-        lines += [*(_pivot(entry.numbers) if len(entry.numbers) > 10 else _table(entry.numbers)), ""]
+        lines += [*table(entry.numbers), ""]
     if entry.command:
         lines += [f"Run it: `{entry.command}`, `lostmotion thesis {entry.key}`", ""]
     return "\n".join(lines)
+
+
+def table(numbers: Sequence[Number]) -> list[str]:
+    """The lines of a table; labels "row: column" make one with columns."""
+    return _pivot(numbers) if any(": " in n.label for n in numbers) else _table(numbers)
 
 
 def _table(numbers: Sequence[Number]) -> list[str]:
@@ -61,37 +78,29 @@ def _table(numbers: Sequence[Number]) -> list[str]:
 
 
 def _pivot(numbers: Sequence[Number]) -> list[str]:
-    """Labels "row: column" as a table of their own; labels without a colon above it."""
+    """Labels "row: column" as a table of their own, those without a colon above it.
+
+    A column whose rows differ in unit has the units at the end of the rows; the thesis's numbers stand in front.
+    """
     plain = [n for n in numbers if ": " not in n.label]
     cells = {tuple(n.label.split(": ", 1)): n for n in numbers if ": " in n.label}
-    columns = list(dict.fromkeys(column for _, column in cells))
-    units = {column: n.unit for (_, column), n in cells.items()}
-    head = " | ".join(f"{c} [{units[c]}]" if units[c] else c for c in columns)
-    rows = [*([*_table(plain), ""] if plain else []), f"| | {head} |", "|---|" + "---:|" * len(columns)]
-    for name in dict.fromkeys(row for row, _ in cells):
-        values = (text(cells[(name, c)]) if (name, c) in cells else "" for c in columns)
-        rows.append(f"| {name} | {' | '.join(values)} |")
+    columns, names = (list(dict.fromkeys(key[part] for key in cells)) for part in (1, 0))
+    units = {column: {n.unit for (_, c), n in cells.items() if c == column} for column in columns}
+    mixed = any(len(each) > 1 for each in units.values())
+    said = any(n.thesis is not None for n in cells.values())
+    head = [c if mixed or units[c] == {""} else f"{c} [{min(units[c])}]" for c in columns]
+    head = ["thesis"] * said + head
+    rows = [*([*_table(plain), ""] if plain else []), f"| | {' | '.join([*head, *['unit'] * mixed])} |"]
+    rows.append("|---|" + "---:|" * len(head) + "---|" * mixed)
+    for name in names:
+        mine = {c: cells[name, c] for c in columns if (name, c) in cells}
+        theirs = next((f"{n.thesis:g}" for n in mine.values() if n.thesis is not None), "")
+        values = [*[theirs] * said, *(text(mine[c]) if c in mine else "" for c in columns)]
+        rows.append(f"| {name} | {' | '.join([*values, *[next(iter(mine.values())).unit] * mixed])} |")
     return rows
 
 
 def text(n: Number) -> str:
     """Our value as the page shows it."""
-    return f"{n.ours:.{n.digits}f}" if math.isfinite(n.ours) else "-"
-
-
-def check(folder: Path, made: Sequence[Entry]) -> None:
-    """Compares numbers computed now with those stored.
-
-    Raises: `JobFailed` with every number that has moved by more than a unit of its last digit shown and 2 %.
-    """
-    old = json.loads((folder / "thesis.json").read_text(encoding="utf-8"))
-    moved = []
-    for entry in made:
-        for n in entry.numbers:
-            was = old.get(entry.key, {}).get(n.label, "missing")
-            if was is None and not math.isfinite(n.ours):
-                continue
-            if not isinstance(was, float | int) or abs(was - n.ours) > max(10.0**-n.digits, 0.02 * abs(n.ours)):
-                moved.append(f"{entry.key} {n.label}: {was} -> {n.ours:.4g}")
-    if moved:
-        raise JobFailed(f"docs/thesis.md is stale; run `lostmotion gallery`: {'; '.join(moved)}")
+    shown = f"{n.ours:.{n.digits}f}" if math.isfinite(n.ours) else "-"
+    return shown.removeprefix("-") if shown != "-" and float(shown) == 0.0 else shown

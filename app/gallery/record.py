@@ -1,55 +1,98 @@
-"""Open-loop records of the virtual valve, and what the design model says to the same commands."""
+"""Open-loop records of the virtual valve, each with the command that makes the same one over Modbus."""
 
 from __future__ import annotations
 
+import json
+import shlex
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from control.design import DesignModel
-from control.identify_model import lagged, make_grid, stem
+from control.experiment_catalog import make_experiment
 from logs.recording import FloatArray, Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
 
-PERIOD_S = 0.1
+if TYPE_CHECKING:
+    from control.identify_result import Identified
+
+TRAINING_SEED = 1
+SEEDS = range(2, 22)  # of records that the model has not seen
+PLAIN: Mapping[str, object] = {"conditioning": False}
 
 
-def levels(values: Sequence[float], hold_s: float) -> FloatArray:
-    """Commands that stay at every value for `hold_s`, one per tick."""
-    return np.repeat(np.asarray(values, dtype=np.float64), round(hold_s / PERIOD_S))
+@dataclass(frozen=True, slots=True)
+class Sweep:
+    """An experiment on a fresh virtual valve, as `lostmotion sweep KIND --physics PHYSICS` does it."""
+
+    kind: str
+    settings: Mapping[str, object] = field(default_factory=dict)
+    physics: str = "thesis"
+
+    def record(self, seed: int = TRAINING_SEED) -> Recording:
+        """Its record without the wire, for speed; commands in psi, or percent for the positioner."""
+        unit = "percent" if self.physics == "positioner" else "psi"
+        plan = make_experiment(self.kind, {"unit": unit, "seed": seed, **PLAIN, **self.settings})
+        schedule = plan.commands()
+        # A command goes out after the readings of its tick and is in force when the next row is read.
+        command = np.concatenate(([0.0], schedule.command[:-1]))
+        pressure, position = record(make_physics(self.physics, seed), schedule.time_s, command)
+        return Recording(self.kind, schedule.time_s, command, position, pressure)
+
+    def command(self, seed: int = TRAINING_SEED, out: str = "") -> str:
+        """What to type for the same over Modbus."""
+        words = ["lostmotion", "sweep", self.kind, *([] if self.physics == "thesis" else ["--physics", self.physics])]
+        for key, value in {**PLAIN, **self.settings}.items():
+            words += ["--set", f"{key}={_short(value)}"]
+        return shlex.join([*words, "--seed", str(seed), *(["--out", out] if out else [])])
 
 
-def play(commands: FloatArray, physics: str = "thesis", seed: int = 1, **options: object) -> Recording:
-    """The record of a fresh virtual valve that gets these commands (psi, or percent for the positioner)."""
-    time_s = PERIOD_S * np.arange(commands.size, dtype=np.float64)
-    pressure, position = record(make_physics(physics, seed, **options), time_s, commands)
-    return Recording(name=physics, time_s=time_s, command=commands, position=position, pressure=pressure)
+def _short(value: object) -> str:
+    """A value as on a command line: 5 for 5.0, lists without blanks."""
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return f"[{','.join(map(_short, value))}]"
+    return f"{value:.6g}" if isinstance(value, float) else json.dumps(value)
+
+
+# The conditioning stroke before it shows the rate limit, which steps of 0.2 psi do not reach.
+STAIRCASE = Sweep("staircase", {"low": 5.0, "high": 12.2, "step": 0.2, "dwell_s": 20.0, "conditioning": True})
+IDENTIFY = f"{STAIRCASE.command(out='RUN')} && lostmotion identify RUN --out MODEL.toml"
+
+
+@cache
+def identified() -> Identified:
+    """What one record, the staircase of figure 1-6, gives; its model is tested in figures 2-4, 2-5 and 2-7."""
+    from control.identify import identify
+
+    return identify([STAIRCASE.record()])
+
+
+def on_unseen(sweep: Sweep, seed: int) -> str:
+    """The commands that identify the model and hold it against a record that it has not seen."""
+    simulate = "lostmotion simulate MODEL.toml OTHER --out FILE.csv --plot FILE.png"
+    return f"{IDENTIFY} && {sweep.command(seed, 'OTHER')} && {simulate}"
 
 
 def simulated(recording: Recording, design: DesignModel) -> FloatArray:
-    """The design model's stem for the commands of a record, from rest at the first reading [in]."""
-    grid = make_grid(recording.time_s)
-    d = design
-    pressure = lagged(grid, recording.command, d.ep_tau_s, float(recording.command[0]))
-    numbers = np.array([d.a1, d.a2, d.compliance, d.compliance, d.tau_s, d.rate_limit, d.travel])
-    x0 = float(np.clip(recording.position[0], 0.0, d.travel))
-    return stem(grid, pressure, numbers, x0, x0)[0]
+    """The model's stem for the commands of a record, as `lostmotion simulate` computes it [in]."""
+    from twin.insert import plant_of
+    from twin.simulate import simulate_recording
+
+    return simulate_recording(plant_of(design), recording)[1]
 
 
-def fit_percent(measured: FloatArray, model: FloatArray) -> float:
-    """100 (1 - |measured - model| / |measured - mean|), the usual fit figure [%]."""
-    spread = float(np.linalg.norm(measured - measured.mean()))
-    return 100.0 * (1.0 - float(np.linalg.norm(measured - model)) / spread)
-
-
-def settled(recording: Recording, hold_s: float) -> tuple[FloatArray, FloatArray]:
-    """Command and mean position of the last quarter of every hold."""
-    n = round(hold_s / PERIOD_S)
-    rows = recording.position[: recording.n // n * n].reshape(-1, n)
+def settled(recording: Recording, hold_s: float, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Command, and mean of `values` over the last quarter, of every hold."""
+    n = round(hold_s / recording.time_s[1])
+    rows = values[: recording.n // n * n].reshape(-1, n)
     return recording.command[: rows.size].reshape(-1, n)[:, -1], np.asarray(rows[:, -n // 4 :].mean(axis=1))
 
 
-def options(effects: Mapping[str, float] | None = None, **numbers: float) -> dict[str, object]:
-    """Plant options as the catalog takes them."""
-    return {"effects": dict(effects or {}), **numbers}
+def typical(values: Mapping[int, float]) -> int:
+    """The key whose value is nearest the median: the record to show, neither the best nor the worst."""
+    middle = float(np.median(list(values.values())))
+    return min(values, key=lambda key: abs(values[key] - middle))
