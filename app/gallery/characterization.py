@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,6 +21,7 @@ DESIGN = DesignModel()
 TARGETS = (0.0, 25.0, 50.0, 75.0, 100.0, 75.0, 50.0, 25.0)
 POSITIONER_HOLD_S = 120.0
 POSITIONER = Sweep("points", {"points": [[target, 0.0, POSITIONER_HOLD_S] for target in TARGETS]}, physics="positioner")
+ENOUGH_PSI = 13.0
 STEP_PSI, STEP_HOLD_S = 0.25, 20.0
 STEPS = Sweep("staircase", {"low": 5.0, "high": 12.0, "step": STEP_PSI, "dwell_s": STEP_HOLD_S})
 MOVED = 0.02  # of travel: the stem has followed
@@ -52,8 +54,9 @@ def figure_1_2() -> Entry:
         f"curve has reached {reach:.1f} %; the feedback lever turns, so its arc is not the stem's line; and its relay "
         f"has to carry the pressure across a deadband of {DESIGN.deadband:.2f} psi every time the sign of the error "
         "changes, while the stem moves on. The positioner's numbers are ours, for the thesis gives none: the supply "
-        "was chosen so that it comes to 97 %, and the lever's angle so that the error comes near 5 %. What emerges is "
-        "that all three appear together, where, and that the stem hunts although no line of the program makes it.",
+        f"was chosen so that it comes to 97 % (with {ENOUGH_PSI:g} psi, `--plant supply={ENOUGH_PSI:g}`, the valve "
+        f"closes to {_closed():.0f} %), and the lever's angle so that the error comes near 5 %. What emerges is that "
+        "all three appear together, where, and that the stem hunts although no line of the program makes it.",
         (
             Number("highest position", 97.0, float(tails[targets == 100.0].mean()), "%", 1),
             Number("largest mean error of a hold below 100 %", 5.0, float(error[targets < 100.0].max()), "%", 1),
@@ -63,6 +66,12 @@ def figure_1_2() -> Entry:
         draw,
         command=POSITIONER.command(),
     )
+
+
+def _closed() -> float:
+    """Where the valve comes at a command of 100 % when the pilot has air enough [%]."""
+    rows = replace(POSITIONER, plant={"supply": ENOUGH_PSI}).record().position.reshape(len(TARGETS), -1)
+    return 100.0 * float(np.median(rows[TARGETS.index(100.0), rows.shape[1] // 2 :])) / DESIGN.travel
 
 
 def figure_1_5() -> Entry:

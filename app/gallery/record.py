@@ -32,6 +32,7 @@ class Sweep:
     kind: str
     settings: Mapping[str, object] = field(default_factory=dict)
     physics: str = "thesis"
+    plant: Mapping[str, float] = field(default_factory=dict)
 
     def record(self, seed: int = TRAINING_SEED) -> Recording:
         """Its record without the wire, for speed; commands in psi, or percent for the positioner."""
@@ -40,12 +41,14 @@ class Sweep:
         schedule = plan.commands()
         # A command goes out after the readings of its tick and is in force when the next row is read.
         command = np.concatenate(([0.0], schedule.command[:-1]))
-        pressure, position = record(make_physics(self.physics, seed), schedule.time_s, command)
+        pressure, position = record(make_physics(self.physics, seed, **self.plant), schedule.time_s, command)
         return Recording(self.kind, schedule.time_s, command, position, pressure)
 
     def command(self, seed: int = TRAINING_SEED, out: str = "") -> str:
         """What to type for the same over Modbus."""
         words = ["lostmotion", "sweep", self.kind, *([] if self.physics == "thesis" else ["--physics", self.physics])]
+        for name, number in self.plant.items():
+            words += ["--plant", f"{name}={number:g}"]
         for key, value in {**PLAIN, **self.settings}.items():
             words += ["--set", f"{key}={_short(value)}"]
         return shlex.join([*words, "--seed", str(seed), *(["--out", out] if out else [])])

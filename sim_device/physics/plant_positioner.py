@@ -18,15 +18,17 @@ def make(
     pilot: Mapping[str, float] | None = None,
     **numbers: float,
 ) -> ValvePhysics:
-    """A valve under its positioner, with `effects` of the valve, `pilot` numbers, or other design numbers.
+    """A valve under its positioner, with `effects` of the valve, or other numbers: of the pilot (`supply=13.0`, also as
+    `pilot`) and of the valve's design.
 
     Raises: `BadInput` for names, forms or sizes that this plant does not have; `TypeError` for an unknown pilot number.
     """
     from sim_device.physics.positioner.plant import Pilot, PositionerValve
     from sim_device.physics.thesis.plant import checked_design
 
+    known = Pilot.__dataclass_fields__
+    settings: dict[str, Any] = {**(pilot or {}), **{name: numbers.pop(name) for name in known if name in numbers}}
     rest, design = split({"friction_in_motion": 1.0, **(effects or {})}, checked_design(numbers))
-    settings: dict[str, Any] = dict(pilot or {})
     return PositionerValve(seed, Pilot(**settings), design, rest, noise)
 
 

@@ -23,6 +23,10 @@ def test_it_reaches_97_percent_of_travel() -> None:
     assert settled(100.0) == pytest.approx(97.0, abs=0.3)
 
 
+def test_with_more_air_it_closes_so_that_the_supply_is_what_ends_it() -> None:
+    assert settled(100.0, supply=13.0) == pytest.approx(100.0, abs=1.0)
+
+
 def test_it_hunts_for_ever() -> None:
     position = settled(40.0)
     assert 4.0 < np.ptp(position) < 12.0
