@@ -15,13 +15,17 @@ from sim_device.valve import ValvePhysics
 
 
 class PhysicsBench:
-    """Implements `hal.bench.Bench` on a `ValvePhysics`. Exact readings, no latency, no counts."""
+    """Implements `hal.bench.Bench` on a `ValvePhysics`. Exact readings, no latency, no counts.
 
-    def __init__(self, physics: ValvePhysics, clock: Clock, unit: str = "psi") -> None:
+    `highest` is where the range of commands ends, in their unit.
+    """
+
+    def __init__(self, physics: ValvePhysics, clock: Clock, unit: str = "psi", highest: float = 20.0) -> None:
         self.physics = physics
         self._clock = clock
         self._command = 0.0
         self._unit = unit
+        self._highest = highest
 
     @property
     def info(self) -> BenchInfo:
@@ -30,7 +34,7 @@ class PhysicsBench:
             port="none",
             command_unit=self._unit,
             command_min=0.0,
-            command_max=20.0 if self._unit == "psi" else 100.0,
+            command_max=self._highest if self._unit == "psi" else 100.0,
             safe_command=0.0,
             travel_in=0.5625,
             min_period_s=0.0,
@@ -69,11 +73,13 @@ def open_virtual(
     effects: Mapping[str, float] | None = None,
     noise: float = 1.0,
     name: str = "thesis",
+    highest_psi: float = 20.0,
 ) -> Opened:
     """A fresh virtual valve with its own stepped clock, and the way to ask where its stem really is."""
     physics = make_physics(name, seed, noise=noise, effects=dict(effects or {}), **dict(numbers or {}))
     clock = SteppedClock()
-    return Opened(PhysicsBench(physics, clock, "percent" if name == "positioner" else "psi"), clock, stem_of(physics))
+    bench = PhysicsBench(physics, clock, "percent" if name == "positioner" else "psi", highest_psi)
+    return Opened(bench, clock, stem_of(physics))
 
 
 def stem_of(physics: ValvePhysics) -> Callable[[], float] | None:

@@ -46,6 +46,23 @@ class DesignModel:
         return 0.5 * (self.a1 + self.a2)
 
 
+def check_for_control(design: DesignModel) -> None:
+    """Whether controllers and frequency analysis can work with these numbers.
+
+    Raises: `BadInput` for a design that is not in psi and inches, or one without a deadband.
+    """
+    if (design.pressure_unit, design.position_unit) != ("psi", "in"):
+        raise BadInput(
+            f"controllers work in psi and in, this design is in {design.pressure_unit} and {design.position_unit}; "
+            "convert the design model first"
+        )
+    if design.deadband <= 0.0:
+        raise BadInput(
+            f"this design has no deadband (a1 = {design.a1:g}, a2 = {design.a2:g} psi), so there is no lost motion to "
+            "tune for or to hunt with; identify the model from a sweep that turns round"
+        )
+
+
 class _Strict(BaseModel):
     model_config = ConfigDict(extra="forbid")
 

@@ -15,13 +15,17 @@ BLUE, ORANGE, GREEN, RED, GREY = "#1f5fa8", "#d9822b", "#2e8b57", "#b5322e", "#8
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """One number: the thesis's (None where it gives none) and ours, in the same unit. `digits` after the point."""
+    """One number: the thesis's (None where it gives none) and ours, in the same unit. `digits` after the point.
+
+    `absent` is shown where ours is not finite: there is no such thing.
+    """
 
     label: str
     thesis: float | None
     ours: float
     unit: str
     digits: int = 2
+    absent: str = "-"
 
 
 @dataclass(frozen=True, slots=True)

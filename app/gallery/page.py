@@ -78,22 +78,36 @@ def _table(numbers: Sequence[Number]) -> list[str]:
 
 
 def _pivot(numbers: Sequence[Number]) -> list[str]:
-    """Labels "row: column" as a table of their own, those without a colon above it.
-
-    A column whose rows differ in unit has the units at the end of the rows; the thesis's numbers stand in front.
-    """
+    """Labels "row: column" as tables of their own, one for each set of columns; labels without a colon above them."""
     plain = [n for n in numbers if ": " not in n.label]
-    cells = {tuple(n.label.split(": ", 1)): n for n in numbers if ": " in n.label}
-    columns, names = (list(dict.fromkeys(key[part] for key in cells)) for part in (1, 0))
-    units = {column: {n.unit for (_, c), n in cells.items() if c == column} for column in columns}
+    tables: list[dict[str, dict[str, Number]]] = []
+    for n in numbers:
+        if ": " not in n.label:
+            continue
+        row, column = n.label.split(": ", 1)
+        known = (t for t in tables if row in t or any(column in cells for cells in t.values()))
+        table = next(known, None)
+        if table is None:
+            tables.append(table := {})
+        table.setdefault(row, {})[column] = n
+    lines = [*_table(plain), ""] if plain else []
+    for number, table in enumerate(tables):
+        lines += [*([""] if number else []), *_pivoted(table)]
+    return lines
+
+
+def _pivoted(table: dict[str, dict[str, Number]]) -> list[str]:
+    """One table. A column whose rows differ in unit has the units at the end of the rows; the thesis's numbers stand in
+    front."""
+    columns = list(dict.fromkeys(column for cells in table.values() for column in cells))
+    units = {column: {cells[column].unit for cells in table.values() if column in cells} for column in columns}
     mixed = any(len(each) > 1 for each in units.values())
-    said = any(n.thesis is not None for n in cells.values())
+    said = any(n.thesis is not None for cells in table.values() for n in cells.values())
     head = [c if mixed or units[c] == {""} else f"{c} [{min(units[c])}]" for c in columns]
     head = ["thesis"] * said + head
-    rows = [*([*_table(plain), ""] if plain else []), f"| | {' | '.join([*head, *['unit'] * mixed])} |"]
+    rows = [f"| | {' | '.join([*head, *['unit'] * mixed])} |"]
     rows.append("|---|" + "---:|" * len(head) + "---|" * mixed)
-    for name in names:
-        mine = {c: cells[name, c] for c in columns if (name, c) in cells}
+    for name, mine in table.items():
         theirs = next((f"{n.thesis:g}" for n in mine.values() if n.thesis is not None), "")
         values = [*[theirs] * said, *(text(mine[c]) if c in mine else "" for c in columns)]
         rows.append(f"| {name} | {' | '.join([*values, *[next(iter(mine.values())).unit] * mixed])} |")
@@ -102,5 +116,5 @@ def _pivot(numbers: Sequence[Number]) -> list[str]:
 
 def text(n: Number) -> str:
     """Our value as the page shows it."""
-    shown = f"{n.ours:.{n.digits}f}" if math.isfinite(n.ours) else "-"
-    return shown.removeprefix("-") if shown != "-" and float(shown) == 0.0 else shown
+    shown = f"{n.ours:.{n.digits}f}" if math.isfinite(n.ours) else n.absent
+    return shown.removeprefix("-") if math.isfinite(n.ours) and float(shown) == 0.0 else shown

@@ -52,6 +52,14 @@ def predict(loop: LinearLoop, design: DesignModel, n: int = 600, points: int = 4
     return found
 
 
+def grows(loop: LinearLoop, design: DesignModel) -> bool:
+    """Whether the loop is unstable with the play wide open, so that oscillations beyond some size grow without end."""
+    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 2000)
+    line = loop(omega) * design.compliance
+    crossing = (np.diff(np.sign(line.imag)) != 0) & (line.real[:-1] < -1.0)
+    return bool(crossing.any())
+
+
 def _frequencies(
     loop: LinearLoop, design: DesignModel, amplitudes: FloatArray, points: int
 ) -> list[tuple[float, float, float]]:

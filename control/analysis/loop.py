@@ -20,7 +20,8 @@ LawName = Literal["p", "p_incremental", "pi"]
 @dataclass(frozen=True, slots=True)
 class LinearLoop:
     """Law and linear dynamics. `tick_s` of 0 is a continuous loop without delay; otherwise a reading is answered one
-    tick later and held for a tick, as on the bench. Gains: kp in psi/in, ki in psi/(in s)."""
+    tick later and held for a tick, as on the bench. Gains: kp in psi/in, ki in psi/(in s). `dead_time_s` is the
+    converter's, before the pressure reading; `late_s` is the delay of the position reading (LVDT, its filter)."""
 
     law: LawName
     kp: float
@@ -29,6 +30,7 @@ class LinearLoop:
     stem_tau_s: float = 2.7
     dead_time_s: float = 0.0
     tick_s: float = 0.1
+    late_s: float = 0.0
 
     def converter(self, omega: FloatArray) -> ComplexArray:
         """From command to pressure, sampled: answer after a tick, hold, dead time, lag. Shape as `omega` [rad/s]."""
@@ -42,14 +44,15 @@ class LinearLoop:
         """From position error [in] to the pressure at the play [psi].
 
         The incremental P law adds to the measured pressure: command = pressure + kp e, which closes an inner loop
-        around the converter and makes an accumulator of it.
+        around the converter and makes an accumulator of it. A late position reading delays the error, and is not in
+        that inner loop.
         """
-        through = self.converter(omega)
+        through, late = self.converter(omega), np.exp(-1j * omega * self.late_s)
         if self.law == "p_incremental":
-            return _complex(self.kp * through / (1.0 - through))
+            return _complex(late * self.kp * through / (1.0 - through))
         if self.law == "pi":
-            return through * (self.kp + self.ki * self._integrator(omega))
-        return through * self.kp
+            return _complex(late * through * (self.kp + self.ki * self._integrator(omega)))
+        return _complex(late * through * self.kp)
 
     def after_play(self, omega: FloatArray) -> ComplexArray:
         """From the play's output to the stem, without the rate limit."""

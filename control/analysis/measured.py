@@ -8,6 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 FloatArray = npt.NDArray[np.float64]
+LASTS = 0.95  # near its border a loop can take an hour to come to rest; 5 % less within a quarter record is dying
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,13 +22,13 @@ class MeasuredCycle:
 
 def measure_cycle(time_s: FloatArray, stem_in: FloatArray, smallest_in: float) -> MeasuredCycle | None:
     """The oscillation in the last half of a record; None where there are less than two cycles, it is too small, or it
-    dies out (the last quarter has less than 80 % of the swing of the quarter before).
+    dies out (the last quarter has less than 95 % of the swing of the quarter before).
 
     Crossings of the mean count after an excursion of a quarter of the amplitude, so that noise does not.
     """
     half = time_s.size // 2
     t, x = time_s[half:], stem_in[half:]
-    if np.ptp(x[x.size // 2 :]) < 0.8 * np.ptp(x[: x.size // 2]):
+    if np.ptp(x[x.size // 2 :]) < LASTS * np.ptp(x[: x.size // 2]):
         return None
     low, high = np.percentile(x, [1.0, 99.0])
     amplitude = 0.5 * float(high - low)

@@ -91,3 +91,37 @@ def test_analyse_one_loop(tmp_path: Path) -> None:
     assert case["predicted"]["stable"]
     assert case["measured"]["period_s"] == pytest.approx(15.0, abs=0.5)
     assert picture.is_file()
+
+
+def test_analyse_a_sweep_over_dead_time(tmp_path: Path) -> None:
+    """The incremental law hunts without dead time and not with half a second of it."""
+    table, picture = tmp_path / "gains.csv", tmp_path / "gains.png"
+    arguments = ["--law", "p_incremental", "--sweep", "dead_time=0:0.5:2", "--csv", str(table), "--plot", str(picture)]
+    done = CliRunner().invoke(analyse, arguments, catch_exceptions=False)
+    head, hunts, calm = (line.split(",") for line in table.read_text(encoding="utf-8").splitlines())
+    at = head.index("measured_swing_percent")
+    assert float(hunts[at]) == pytest.approx(56.7, abs=2.0)
+    assert calm[at] == ""
+    assert "not found" in done.stdout and "without noise" in done.stdout
+    assert picture.stat().st_size > 1000
+
+
+def test_analyse_over_modbus_with_the_real_stops() -> None:
+    done = CliRunner().invoke(analyse, ["--law", "pi", "--ki", "8", "--modbus", "--json"], catch_exceptions=False)
+    (case,) = json.loads(done.stdout)
+    assert 2.0 * case["measured"]["stem_in"] > DESIGN.travel > 2.0 * case["wired"]["stem_in"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--sweep", "kp=1:6:11"], "give --law"),
+        (["--law", "p", "--sweep", "kp=1"], "of the form"),
+        (["--law", "p", "--sweep", "mass=1:2:3"], "has no 'mass'"),
+        (["--law", "p", "--sweep", "kp=2:1:3"], "FROM < TO"),
+        (["--law", "p", "--ki", "1"], "only --law pi"),
+    ],
+)
+def test_analyse_refuses_what_it_cannot_sweep(arguments: list[str], said: str) -> None:
+    with pytest.raises(BadInput, match=said):
+        CliRunner().invoke(analyse, arguments, catch_exceptions=False)
