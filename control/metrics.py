@@ -123,8 +123,16 @@ def score_hold(
         settling_s=None if outside.size and outside[-1] >= error.size - 1 else settling_s,
         floor_s=math.ceil(least_s / period_s + 1.0 - 1e-9) * period_s if 0.0 < least_s < math.inf else 0.0,
         overshoot=max(float(beyond.max()), 0.0) if least_s > 0.0 else 0.0,
-        cycle=limit_cycle(error[error.size // 4 :]) if np.ptp(error[-error.size // 3 :]) > CYCLE_PERCENT else 0.0,
+        cycle=hold_cycle(error),
     )
+
+
+def hold_cycle(error_percent: FloatArray) -> float:
+    """Peak to peak [percent of travel] of a hold's limit cycle: after its first quarter, and still there in its last
+    third; 0 where there is none."""
+    if np.ptp(error_percent[-error_percent.size // 3 :]) <= CYCLE_PERCENT:
+        return 0.0
+    return limit_cycle(error_percent[error_percent.size // 4 :])
 
 
 def limit_cycle(error_percent: FloatArray) -> float:

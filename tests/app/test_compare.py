@@ -1,4 +1,4 @@
-"""compare, tune and analyse on the command line; trials without a wire against the same over Modbus."""
+"""compare and analyse on the command line; trials without a wire against the same over Modbus."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from click.testing import CliRunner
 
 from app.commands.analyse import command as analyse
 from app.commands.compare import command as compare
-from app.commands.tune import command as tune
 from app.physics_bench import open_virtual
 from app.session import open_bench
 from control.controller import make_controller
@@ -72,17 +71,6 @@ def test_compare_refuses_what_it_does_not_know(arguments: list[str], said: str) 
         CliRunner().invoke(compare, arguments, catch_exceptions=False)
 
 
-def test_tune_follows_the_model(tmp_path: Path) -> None:
-    model = tmp_path / "model.toml"
-    save_design(DesignModel(compliance=0.095, a1=9.0, a2=7.0), model)
-    done = CliRunner().invoke(tune, [str(model), "--json"], catch_exceptions=False)
-    said = json.loads(done.stdout)
-    assert said["if_then_line"]["settings"]["g"] == pytest.approx(1.0 / 0.095, rel=0.01)
-    assert said["pi"]["margins"]["gain"] >= 1.9
-    for name, row in said.items():
-        make_controller(name, DESIGN, **row["settings"])
-
-
 def test_analyse_one_loop(tmp_path: Path) -> None:
     picture = tmp_path / "nyquist.png"
     arguments = ["--law", "p_incremental", "--kp", "3", "--json", "--plot", str(picture)]
@@ -125,3 +113,10 @@ def test_analyse_over_modbus_with_the_real_stops() -> None:
 def test_analyse_refuses_what_it_cannot_sweep(arguments: list[str], said: str) -> None:
     with pytest.raises(BadInput, match=said):
         CliRunner().invoke(analyse, arguments, catch_exceptions=False)
+
+
+def test_analyse_refuses_a_design_that_it_cannot_use(tmp_path: Path) -> None:
+    model = tmp_path / "model.toml"
+    save_design(DesignModel(a1=7.0, a2=7.0), model)
+    with pytest.raises(BadInput, match="no deadband"):
+        CliRunner().invoke(analyse, ["--design", str(model)], catch_exceptions=False)
