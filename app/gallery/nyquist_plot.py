@@ -28,7 +28,8 @@ def draw_nyquist(loops: Sequence[LinearLoop], design: DesignModel, path: Path) -
     from matplotlib.figure import Figure as Canvas
 
     laws = list(dict.fromkeys(loop.law for loop in loops))
-    canvas = Canvas(figsize=(1.2 + 4.2 * len(laws), 6.0), dpi=100, layout="constrained")
+    most = max(sum(loop.law == law for loop in loops) for law in laws)
+    canvas = Canvas(figsize=(1.2 + 4.2 * len(laws), 5.6 + 0.3 * most), dpi=100, layout="constrained")
     for axes, law in zip(canvas.subplots(1, len(laws), squeeze=False)[0], laws, strict=True):
         nyquist(axes, [loop for loop in loops if loop.law == law], design)
         axes.set_title(TITLES[law], fontsize=9)

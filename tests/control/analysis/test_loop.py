@@ -49,3 +49,18 @@ def test_the_phase_margin_is_that_of_scipys_curve() -> None:
     assert phase_margin(LinearLoop("pi", 26.3, 9.75, tick_s=0.0), DESIGN) == pytest.approx(
         180.0 + phase_deg[crossing], abs=0.1
     )
+
+
+@pytest.mark.parametrize("law", ["p", "p_incremental", "pi"])
+def test_a_late_reading_turns_the_whole_loop_and_dead_time_not_that_of_an_accumulator(law: str) -> None:
+    omega = np.geomspace(0.01, 3.0, 20)
+    plain, late, dead = (
+        LinearLoop(law, 3.0, 1.0, **delay)(omega)  # type: ignore[arg-type]
+        for delay in ({}, {"late_s": 0.4}, {"dead_time_s": 0.4})
+    )
+    turned = plain * np.exp(-0.4j * omega)
+    assert np.abs(late / turned - 1.0).max() < 1e-12
+    if law == "p_incremental":
+        assert (np.abs(dead) < np.abs(plain)).all()  # it adds up more slowly
+    else:
+        assert np.abs(dead / turned - 1.0).max() < 1e-12
