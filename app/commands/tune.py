@@ -155,8 +155,10 @@ def _print_margins(tuned: Sequence[Tuned], answers: Answers, everything: bool, s
         table = new_table(title, headings, left=("controller",))
         for t in tuned:
             mine: Any = answers[t.controller]
-            hunts = bool(mine["nominal"].cycle)
-            table.add_row(t.controller, *("hunts" if hunts else span_and_swing(mine[key]) for key in AXES))
+            cycle = mine["nominal"].cycle
+            table.add_row(
+                t.controller, *(f"hunts\n{cycle:.1f} %" if cycle else span_and_swing(mine[key]) for key in AXES)
+            )
         console().print(table)
     best, why = _advice(answers, everything)
     click.echo(f"recommended: {best or 'none'}; {why}" + ("" if everything else "; --margins measures the others"))
