@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
+
+from control.exact import decay
 
 LONGEST_TICKS = 8
 PARTS = 10  # hypotheses per tick
@@ -15,12 +18,12 @@ MEANINGFUL_PSI = 0.03  # commands that differ by less cannot tell when they arri
 class DeadTime:
     """The last commands, the newest first [psi]; the error of each hypothesis [psi^2]; the chosen one, in tenths of a
     tick. During a tick in which one command gives way to the next, that mean of both stands for them which brings the
-    converter as far; `keep` is what its lag leaves of a difference in a tick."""
+    converter as far; `pace` is a tick over the converter's time constant."""
 
     sent: tuple[float, ...]
     misses: tuple[float, ...] = (0.0,) * (LONGEST_TICKS * PARTS + 1)
     parts: int = 0
-    keep: float = 1.0
+    pace: float = 0.0
 
     @property
     def ticks(self) -> float:
@@ -48,22 +51,35 @@ class DeadTime:
 
     def judged(self, pressure_psi: float, predict: Callable[[float], float]) -> DeadTime:
         """The hypotheses after the tick that has just ended; `predict` gives its pressure for a command."""
-        now = tuple((pressure_psi - predict(self._during(q))) ** 2 for q in range(len(self.misses)))
-        misses = tuple(MEMORY * old + new for old, new in zip(self.misses, now, strict=True))
+        now = [pressure_psi - predict(command_psi) for command_psi in self._each()]
+        misses = tuple(MEMORY * old + new * new for old, new in zip(self.misses, now, strict=True))
         best = min(range(len(misses)), key=misses.__getitem__)
         here = misses[self.parts]
-        convincing = misses[best] < 0.6 * here and here > 4.0 * MEANINGFUL_PSI**2
-        return DeadTime(self.sent, misses, best if convincing else self.parts, self.keep)
+        convincing = misses[best] < 0.6 * here and here > 4.0 * MEANINGFUL_PSI * MEANINGFUL_PSI
+        return DeadTime(self.sent, misses, best if convincing else self.parts, self.pace)
 
     def and_sent(self, command_psi: float) -> DeadTime:
         """The queue with the command that is in force from now on."""
-        return DeadTime((command_psi, *self.sent[:-1]), self.misses, self.parts, self.keep)
+        return DeadTime((command_psi, *self.sent[:-1]), self.misses, self.parts, self.pace)
 
     def _during(self, parts: int) -> float:
         whole, part = divmod(parts, PARTS)
-        late = part / PARTS
-        share = late if self.keep >= 1.0 else (self.keep ** (1.0 - late) - self.keep) / (1.0 - self.keep)
-        return self.sent[whole] + share * (self.sent[whole + 1] - self.sent[whole])
+        return self.sent[whole] + _shares(self.pace)[part] * (self.sent[whole + 1] - self.sent[whole])
+
+    def _each(self) -> list[float]:
+        """What `arriving` would be with each hypothesis [psi]."""
+        shares = _shares(self.pace)
+        pairs = zip(self.sent[:LONGEST_TICKS], self.sent[1:], strict=False)
+        return [new + share * (old - new) for new, old in pairs for share in shares] + [self.sent[LONGEST_TICKS]]
+
+
+@cache
+def _shares(pace: float) -> tuple[float, ...]:
+    """The older command's share in the mean of both, for each tenth of a tick by which it stays longer."""
+    if pace <= 0.0:
+        return tuple(part / PARTS for part in range(PARTS))
+    keep = decay(pace)
+    return tuple((decay(pace * (PARTS - part) / PARTS) - keep) / (1.0 - keep) for part in range(PARTS))
 
 
 def no_dead_time(command_psi: float) -> DeadTime:

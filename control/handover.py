@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import Self
+
+from control.exact import decay
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,4 +20,4 @@ class Bump:
 
     def fade(self, dt_s: float, blend_s: float) -> Self:
         """The bump after `dt_s`, with the time constant `blend_s` [s]; gone at once for `blend_s` = 0."""
-        return type(self)(self.left_psi * math.exp(-dt_s / blend_s) if blend_s > 0.0 else 0.0)
+        return type(self)(self.left_psi * decay(dt_s / blend_s) if blend_s > 0.0 else 0.0)

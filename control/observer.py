@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from control.controller import Seen
 from control.dead_time import DeadTime, no_dead_time
 from control.design import DesignModel
+from control.exact import decay, lag
 
 MIDDLE_PSI = 9.0
 TURN_PSI = 0.15  # smaller changes of command do not turn the converter's hysteresis round
@@ -100,7 +101,7 @@ class Observer:
         p = inside.p + self.pressure_gain * pressure_error
         innovation = seen.position_in - inside.x
         x = inside.x + min(dt_s * max(1.6 * omega - 1.0 / d.tau_s, 0.3), 0.8) * innovation
-        push = min(dt_s * d.tau_s * omega**2, 0.8 / dt_s * d.tau_s) * innovation
+        push = min(dt_s * d.tau_s * omega * omega, 0.8 / dt_s * d.tau_s) * innovation
         running = abs(inside.w - inside.x) > d.rate_limit * d.tau_s
         if running and push * (inside.w - inside.x) > 0.0:
             push = 0.0  # faster than the limit says nothing of how far the play output is ahead
@@ -118,9 +119,10 @@ class Observer:
 
     def learn_converter(self, inside: Inside, pressure_error: float, seen: Seen, dt_s: float) -> Inside:
         """Dead time, and (by normalized least mean squares, near the command) zero and gain error, as learned."""
-        share = 1.0 - math.exp(-dt_s / self.design.ep_tau_s) if self.design.ep_tau_s > 0.0 else 1.0
+        tau_s = self.design.ep_tau_s
+        share, pace = lag(dt_s, tau_s), dt_s / tau_s if tau_s > 0.0 else math.inf
         before_psi, command_psi = inside.seen_psi, inside.line.arriving
-        line = replace(inside.line, keep=1.0 - share).judged(
+        line = replace(inside.line, pace=pace).judged(
             seen.pressure_psi, lambda u: before_psi + share * (inside.settles(u) - before_psi)
         )
         moved = replace(inside, line=line.and_sent(seen.commanded_psi), seen_psi=seen.pressure_psi)
@@ -128,7 +130,7 @@ class Observer:
             return moved
         lever = (command_psi - MIDDLE_PSI) / 2.0
         way = inside.way
-        step = self.bias_gain * pressure_error / share / (1.0 + lever**2 + way**2)
+        step = self.bias_gain * pressure_error / share / (1.0 + lever * lever + way * way)
         slope = min(max(inside.slope + step * lever / 2.0, -0.1), 0.1)
         return replace(moved, bias=inside.bias + step, slope=slope, kink=inside.kink + step * way)
 
@@ -142,7 +144,7 @@ class Observer:
         d, k = self.design, self.design.compliance
         parts = max(math.ceil(dt_s / 0.03 - 1e-9), 1)
         part_s = dt_s / parts
-        share = 1.0 - math.exp(-part_s / d.ep_tau_s) if d.ep_tau_s > 0.0 else 1.0
+        share = lag(part_s, d.ep_tau_s)
         p, w, x, settles = inside.p, inside.w, inside.x, inside.settles(command_psi)
         for _ in range(parts):
             p += share * (settles - p)
@@ -187,4 +189,4 @@ def follow(x: float, w: float, tau_s: float, rate: float, dt_s: float) -> float:
         straight_s = min(far / rate, dt_s)
         x += math.copysign(rate * straight_s, gap)
         dt_s -= straight_s
-    return w - (w - x) * math.exp(-dt_s / tau_s) if tau_s > 0.0 else w
+    return w - (w - x) * decay(dt_s / tau_s) if tau_s > 0.0 else w

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, replace
 
 from control.controller import Law, Seen
+from control.exact import lag
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
 
@@ -226,7 +226,7 @@ class Brake(Law[BrakeState]):
     def _command_psi(self, inside: Inside, aim_psi: float, dt_s: float, calm: bool = False) -> float:
         """The command that brings the pressure to the aim within a tick, if the supply can and nothing is `calm`."""
         away_psi, tau_s = aim_psi - inside.p, self.design.ep_tau_s
-        lead = min(1.0 / (1.0 - math.exp(-dt_s / tau_s)), 3.5) if tau_s > 0.0 else 1.0
+        lead = min(1.0 / lag(dt_s, tau_s), 3.5)
         lead *= 0.96 if inside.line.ticks > 0.0 else 1.0  # a dead time is known to a part of a tick: not beyond the aim
         return self.clamp(
             inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 and not calm else 1.0) * away_psi)

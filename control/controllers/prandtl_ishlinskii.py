@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from control.controller import Law, Seen
+from control.exact import lag
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +44,7 @@ class PrandtlIshlinskii(Law[PlaysState]):
         return PlaysState(plays, seen.pressure_psi, spread_in, seen.commanded_psi)
 
     def law(self, state: PlaysState, seen: Seen, target_in: float, dt_s: float) -> tuple[PlaysState, float]:
-        share = 1.0 - math.exp(-dt_s / 0.2)
+        share = lag(dt_s, 0.2)
         filtered_psi = state.filtered_psi + share * (seen.pressure_psi - state.filtered_psi)
         plays = self._moved(state.plays_psi, filtered_psi)
         error_in = target_in - seen.position_in
@@ -66,7 +67,7 @@ class PrandtlIshlinskii(Law[PlaysState]):
         return tuple(min(max(z, away_psi - r), away_psi + r) for z, r in zip(plays, self._widths(), strict=True))
 
     def _output(self, plays: tuple[float, ...]) -> float:
-        return self.design.compliance * sum(plays) / len(plays)
+        return self.design.compliance * math.fsum(plays) / len(plays)
 
     def _beyond_stops(self, target_in: float, wish_in: float) -> float:
         """At an end stop the wish goes beyond it: a stop forgives."""

@@ -17,10 +17,13 @@ TICK_S = 0.1
 
 
 def hold(
-    targets: list[float], effects: Mapping[str, float] | None = None, numbers: Mapping[str, float] | None = None
+    targets: list[float],
+    effects: Mapping[str, float] | None = None,
+    numbers: Mapping[str, float] | None = None,
+    seed: int = 4,
 ) -> tuple[BrakeState, npt.NDArray[np.float64]]:
     """The last state, and the true stem of every tick, shape (targets, ticks of 40 s) [% of travel off its target]."""
-    opened, law = open_virtual(4, effects=effects, numbers=numbers), Brake(DESIGN)
+    opened, law = open_virtual(seed, effects=effects, numbers=numbers), Brake(DESIGN)
     assert opened.truth_in is not None
     sample = opened.bench.exchange(0.0)
     state, stems = law.initial(sample, targets[0]), np.empty(400 * len(targets))
@@ -61,11 +64,12 @@ def test_it_notices_sticking_and_only_where_there_is_some() -> None:
 
 @pytest.mark.parametrize("breakaway_psi", [0.15, 0.3])
 def test_pushing_in_vain_leaves_no_trace(breakaway_psi: float) -> None:
-    """Once it knows that the valve sticks, it lands by strokes, and the compliance is still the valve's."""
-    state, off = hold([0.17, 0.39, 0.28, 0.4, 0.1, 0.3], effects={"stiction": breakaway_psi})
-    assert state.sticks
-    assert state.belief.compliance == pytest.approx(DESIGN.compliance, rel=0.03)
-    assert np.abs(off[2:, 300:].mean(axis=1)).max() < 0.3
+    """Once it knows that the valve sticks, it lands by strokes, and the compliance is still the valve's. Which pushes
+    are in vain is chance: the middle one of three runs counts."""
+    runs = [hold([0.17, 0.39, 0.28, 0.4, 0.1, 0.3], {"stiction": breakaway_psi}, seed=seed) for seed in (4, 5, 6)]
+    assert all(state.sticks for state, _ in runs)
+    assert np.median([state.belief.compliance for state, _ in runs]) == pytest.approx(DESIGN.compliance, rel=0.02)
+    assert np.median([np.abs(off[2:, 300:].mean(axis=1)).max() for _, off in runs]) < 0.3
 
 
 def test_a_dead_time_between_two_tenths_of_a_tick_does_not_make_it_hunt() -> None:

@@ -30,7 +30,7 @@ def test_whole_ticks_are_found_from_a_few_steps(true_ticks: int) -> None:
 def test_parts_of_a_tick_are_found_too() -> None:
     """The lag in closed form, with every command coming into force half a tick after the first whole one."""
     line, pressure, sent, keep = no_dead_time(8.0), 8.0, [8.0] * (LONGEST_TICKS + 2), 1.0 - SHARE
-    line = replace(line, keep=keep)
+    line = replace(line, pace=0.1 / 0.3)
     for tick in range(80):
         command = 8.0 + 2.0 * ((tick // 15) % 2)
         before = pressure
