@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from control.controller import Law, Seen
-from control.if_then import Decision, crossing_psi, threshold_line_psi
+from control.if_then import Decision, crossing_psi, threshold_line_psi, to_the_curve_psi
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,7 +22,7 @@ class IfThenPi(Law[IfThenPiState]):
 
     `kp` [psi/in] of 0 means 1 / compliance; `ki` is in psi/(in s). Anti-windup: the integral stands still while the
     pressure has to cross the deadband or sits at a command limit, or while the error is beyond `window_in`, and stays
-    within +-`integral_max_psi`.
+    within +-`integral_max_psi`. It takes over like the other two, see `control/if_then.py`.
     """
 
     kp: float = 0.0
@@ -33,24 +33,27 @@ class IfThenPi(Law[IfThenPiState]):
     tolerance_in: float = 0.0
 
     def start(self, seen: Seen, target_in: float) -> IfThenPiState:
-        return IfThenPiState(Decision(0.0, seen.commanded_psi), 0.0)
+        return IfThenPiState(Decision(0.0, seen.commanded_psi, target_in), 0.0)
 
     def law(self, state: IfThenPiState, seen: Seen, target_in: float, dt_s: float) -> tuple[IfThenPiState, float]:
         last = state.decision
         if not last.due(dt_s):
             return IfThenPiState(last.later(dt_s), state.integral_psi), last.command_psi
         error_in = target_in - seen.position_in
-        if abs(error_in) <= self.tolerance_in:
-            return IfThenPiState(Decision(self.update_s - dt_s, last.command_psi), state.integral_psi), last.command_psi
+        if last.left_alone(target_in, error_in, self.tolerance_in):
+            return replace(state, decision=replace(last, wait_s=self.update_s - dt_s)), last.command_psi
         d = self.design
         line_psi = threshold_line_psi(seen.position_in, d.compliance, d.a1, d.a2)
         jump_psi = crossing_psi(error_in, seen.pressure_psi, line_psi, d.deadband)
+        if not last.placed:
+            jump_psi = to_the_curve_psi(jump_psi, seen, d)
         integral_psi = state.integral_psi
         if not jump_psi and abs(error_in) <= self.window_in and self.min_psi < last.command_psi < self.max_psi:
             room_psi = self.integral_max_psi
             integral_psi = min(max(integral_psi + self.ki * error_in * self.update_s, -room_psi), room_psi)
         asked_psi = seen.pressure_psi + jump_psi + (self.kp or 1.0 / d.compliance) * error_in + integral_psi
-        return IfThenPiState(Decision(self.update_s - dt_s, self.clamp(asked_psi)), integral_psi), asked_psi
+        decision = Decision(self.update_s - dt_s, self.clamp(asked_psi), None, last.placed or jump_psi != 0.0)
+        return IfThenPiState(decision, integral_psi), asked_psi
 
 
 CONTROLLER = IfThenPi

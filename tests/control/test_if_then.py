@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from app.physics_bench import open_virtual
 from control.controller import make_controller
 from control.design import DesignModel
 from control.if_then import Decision, crossing_psi, threshold_line_psi
@@ -33,6 +34,39 @@ def test_the_two_steps_of_figure_3_5(pressure: float, step: float) -> None:
     at_rest = Sample(0.0, pressure, Reading(0.2, 0.0, 0.0), Reading(pressure, 0.0, 0.0))
     _, command = controller.step(controller.initial(at_rest, 0.3), at_rest, 0.3, 0.1)
     assert command == pytest.approx(pressure + step)
+
+
+@pytest.mark.parametrize("name", ["if_then_constant", "if_then_line", "if_then_pi"])
+@pytest.mark.parametrize("rest_psi", [7.6, 8.6, 9.9])
+def test_taking_over_a_valve_at_rest_inside_the_deadband_does_not_move_it(name: str, rest_psi: float) -> None:
+    """On the virtual valve, with the noise of its readings; it came up the closing curve and was let off to rest."""
+    for seed in range(2):
+        opened, tick = open_virtual(seed), 0
+        assert opened.truth_in is not None
+        sample = opened.bench.exchange(5.0)
+        for command_psi, ticks in ((5.0, 100), (DESIGN.a1 + 0.25 / DESIGN.compliance, 400), (rest_psi, 100)):
+            for _ in range(ticks):
+                tick += 1
+                opened.clock.sleep_until(0.1 * tick)
+                sample = opened.bench.exchange(command_psi)
+        controller, stems = make_controller(name, DESIGN), [opened.truth_in()]
+        state = controller.initial(sample, 0.25)
+        for _ in range(600):
+            tick += 1
+            state, command_psi = controller.step(state, sample, 0.25, 0.1)
+            opened.clock.sleep_until(0.1 * tick)
+            sample = opened.bench.exchange(command_psi)
+            stems.append(opened.truth_in())
+        assert max(stems) - min(stems) < 0.01 * DESIGN.travel
+
+
+@pytest.mark.parametrize("name", ["if_then_line", "if_then_pi"])
+def test_the_first_move_after_a_hand_over_ends_on_the_curve(name: str) -> None:
+    """Half a deadband off it, equation (3-1) alone would add a whole one."""
+    between = Sample(0.0, 7.9, Reading(0.2, 0.0, 0.0), Reading(7.9, 0.0, 0.0))
+    controller = make_controller(name, DESIGN, ki=0.0) if name == "if_then_pi" else make_controller(name, DESIGN)
+    _, command = controller.step(controller.initial(between, 0.2), between, 0.25, 0.1)
+    assert command == pytest.approx(DESIGN.a1 + 0.25 / DESIGN.compliance)
 
 
 def test_it_decides_at_its_own_pace() -> None:
