@@ -24,6 +24,7 @@ NOISE_IN = 0.0006
 EDGE_PSI, STIFFNESS, RATE, TRAVEL, MOST = 0.3, 0.015, 0.03, 0.02, 0.1
 WALK_PSI, CREEP_IN = 0.03, 1.5e-4  # random walk of the edges per travel moved, of the play output per root second
 NOISE_PSI, STOP_IN = 0.004, 0.003
+FIRST, LATER = 6, 0.02  # what the supposed noise weighs at the start, in readings; what a new reading weighs later
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +32,7 @@ class Belief:
     """Means in `inside`, `compliance` [in/psi], `rate_limit` [in/s] and `travel`, where the play output stops [in];
     `spread` is the covariance of (x, rate limit, travel, w, a1, a2, compliance), row by row; `noise_in`, `noise_psi`
     the standard deviations of one reading; `doubt_psi` that of the pressure estimate; `missed` by how much the last
-    readings of position and pressure were off."""
+    readings of position and pressure were off; `heard`, how many there were."""
 
     inside: Inside
     compliance: float
@@ -42,6 +43,7 @@ class Belief:
     noise_psi: float = NOISE_PSI
     doubt_psi: float = NOISE_PSI
     missed: tuple[float, float] = (0.0, 0.0)
+    heard: int = 0
 
     @property
     def doubt_in(self) -> float:
@@ -68,6 +70,15 @@ class Belief:
         lever = self.inside.p - (self.inside.a1 if side > 0 else self.inside.a2)
         h = ((a, -self.compliance), (K, lever))
         return math.sqrt(max(dot(h, times(_square(self.spread), h)), 0.0))
+
+    def edge_doubt_psi(self, side: int) -> float:
+        """The same as a pressure [psi]."""
+        return self.edge_doubt_in(side) / self.compliance
+
+    def mark(self, side: int) -> tuple[float, float, float]:
+        """Where things stand when pushing begins: the edge of this side [psi], the play output [in], the edge's doubt
+        [psi]."""
+        return self.edge_psi(self.inside.w, side), self.inside.w, self.edge_doubt_psi(side)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,11 +131,14 @@ class PlayFilter:
         return _with(belief, replace(inside, p=p), mean, cov)
 
     def _noise(self, belief: Belief, off_in: float, off_psi: float) -> Belief:
-        """The noise of both readings from how successive ones differ, over some 100; large differences are motion."""
+        """The noise of both readings from how successive ones differ, over some 50; large differences are motion. The
+        first ones at rest count more: the first move, by which the edges are learned, comes half a second later."""
+        rests = abs(belief.inside.w - belief.inside.x) < STOP_IN
+        new = max(1.0 / (belief.heard + FIRST), LATER) if rests else LATER
 
         def grown(sd: float, now: float, last: float, least: float) -> float:
             square, away = sd * sd, now - last
-            return max(math.sqrt(0.98 * square + 0.02 * min(0.5 * away * away, 9.0 * square)), least)
+            return max(math.sqrt((1.0 - new) * square + new * min(0.5 * away * away, 9.0 * square)), least)
 
         return replace(
             belief,
@@ -132,6 +146,7 @@ class PlayFilter:
             noise_psi=grown(belief.noise_psi, off_psi, belief.missed[1], 0.5 * NOISE_PSI),
             doubt_psi=length(0.4 * belief.noise_psi, 0.3 * off_psi),
             missed=(off_in, off_psi),
+            heard=belief.heard + 1,
         )
 
     def _consistent(self, mean: list[float], cov: Matrix, p: float, doubt_psi: float) -> tuple[list[float], Matrix]:

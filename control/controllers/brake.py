@@ -17,7 +17,8 @@ class BrakeState:
     """The belief for the next reading; `drive` is +1 closing, -1 opening, 0 settling; the aim [psi], and for how long
     it has not changed [s]; the belief when the edges were last known well; whether the valve sticks; how often it has
     been turned back or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how
-    long the drive has lasted [s]; edge [psi] and play output [in] when the pushing began."""
+    long the drive has lasted [s], and from where [in]; edge [psi], play output [in] and doubt of the edge [psi] when
+    the pushing began."""
 
     belief: Belief
     target_in: float
@@ -30,7 +31,8 @@ class BrakeState:
     pushing: bool = False
     pushes: int = 0
     driven_s: float = 0.0
-    mark: tuple[float, float] = (0.0, 0.0)
+    from_in: float = 0.0
+    mark: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -84,9 +86,11 @@ class Brake(Law[BrakeState]):
     def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
         stroke = state.sticks and turns > 0
+        from_in = state.from_in if state.drive else soon.inside.x
         aim_psi, drive = self._driven(soon, state, drive, dt_s, stroke and not state.drive)
-        after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False)
-        if stroke and state.driven_s > self.stroke_s:  # nothing moves: what it seemed to teach is forgotten
+        after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False, from_in=from_in)
+        still = abs(soon.inside.x - from_in) < 2.0 * self.again_in
+        if stroke and state.driven_s > self.stroke_s and still:  # what it seemed to teach is forgotten
             return replace(after, drive=0, turns=GIVEN_UP, belief=_with_edges(state.belief, state.found))
         return replace(after, found=soon if not drive else state.found if stroke else None)
 
@@ -100,7 +104,7 @@ class Brake(Law[BrakeState]):
             return replace(state, aim_psi=self._parked(state, soon))
         pushes = side if side * pushes < 0 else pushes + side * (not was_pushing)
         turns = state.turns + (0 if self._touches(soon, side) else 1)
-        mark = state.mark if abs(pushes) > 2 else (soon.edge_psi(soon.inside.w, side), soon.inside.w)
+        mark = state.mark if abs(pushes) > 2 else soon.mark(side)
         aim_psi = self._push_psi(soon, target_in, side, abs(pushes))
         return replace(state, aim_psi=aim_psi, pushing=True, pushes=pushes, turns=turns, mark=mark)
 
@@ -123,13 +127,13 @@ class Brake(Law[BrakeState]):
         if state.sticks or state.drive or state.found is None:
             return state, soon
         rest_psi, was = soon.inside.w / soon.compliance, state.found
-        closing_psi = soon.inside.p - was.inside.a1 - rest_psi - self.surely * _doubt_psi(was, 1)
-        opening_psi = was.inside.a2 + rest_psi - soon.inside.p - self.surely * _doubt_psi(was, -1)
+        closing_psi = soon.inside.p - was.inside.a1 - rest_psi - self.surely * was.edge_doubt_psi(1)
+        opening_psi = was.inside.a2 + rest_psi - soon.inside.p - self.surely * was.edge_doubt_psi(-1)
         enough_psi = max(self.grip_psi, 7.0 * soon.noise_psi)
         if max(closing_psi, opening_psi) > enough_psi or self._in_vain(state, soon, enough_psi):
             belief = _with_edges(state.belief, was)
             return replace(state, sticks=True, turns=0, belief=belief), _with_edges(soon, was)
-        now_psi, was_psi = (_doubt_psi(b, 1) + _doubt_psi(b, -1) for b in (soon, was))
+        now_psi, was_psi = (b.edge_doubt_psi(1) + b.edge_doubt_psi(-1) for b in (soon, was))
         calm = state.quiet_s > 1.5 and abs(state.pushes) < 2
         return (replace(state, found=soon) if now_psi < 0.5 * was_psi and calm else state), soon
 
@@ -137,7 +141,8 @@ class Brake(Law[BrakeState]):
         """Whether pushing the same way again and again has taken the pressure so far, and the play output nowhere."""
         way = _sign(state.pushes)
         went_psi, went_in = way * (soon.inside.p - state.mark[0]), way * (soon.inside.w - state.mark[1])
-        return abs(state.pushes) > 3 and went_psi > 1.5 * enough_psi and went_in < 0.3 * soon.compliance * went_psi
+        visible_psi = 1.5 * enough_psi + state.mark[2]
+        return abs(state.pushes) > 3 and went_psi > visible_psi and went_in < 0.3 * soon.compliance * went_psi
 
     def _begun(self, state: BrakeState, soon: Belief, fresh: bool) -> int:
         """The way to drive, 0 for none: to a new target, back to one that was missed, or as a stroke."""
@@ -148,7 +153,8 @@ class Brake(Law[BrakeState]):
         way = _sign(miss_in)
         if fresh:
             return way if abs(miss_in) > self.band_in else 0
-        far = abs(miss_in) > self.again_in and way * off_in > self.again_in + 2.0 * soon.doubt_in
+        again_in = self.again_in * (1.0 if state.sticks else max(0.125 * state.turns, 1.0))
+        far = abs(miss_in) > again_in and way * off_in > again_in + 2.0 * soon.doubt_in
         if far and state.turns < GIVEN_UP:
             return way
         enough_in = 0.5 * self.tolerance_in + self._allowed_in(soon, 0)
@@ -231,10 +237,6 @@ class Brake(Law[BrakeState]):
         return self.clamp(
             inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 and not calm else 1.0) * away_psi)
         )
-
-
-def _doubt_psi(belief: Belief, side: int) -> float:
-    return belief.edge_doubt_in(side) / belief.compliance
 
 
 def _with_edges(belief: Belief, found: Belief | None) -> Belief:

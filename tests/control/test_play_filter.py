@@ -62,6 +62,13 @@ def test_the_noise_is_measured() -> None:
     assert watch(2, noise=4.0)[0].noise_in == pytest.approx(0.0024, rel=0.35)
 
 
+def test_large_noise_is_heard_before_the_first_move() -> None:
+    """Else the first moves teach edges that are not there."""
+    heard = [watch(seed, noise=4.0, stairs=np.zeros(8))[0].noise_in for seed in range(6)]
+    assert np.median(heard) > 0.001
+    assert np.median([watch(seed, stairs=np.zeros(8))[0].noise_in for seed in range(6)]) < 0.0008
+
+
 @pytest.mark.parametrize("rate_limit", [0.115, 0.125])
 def test_the_rate_limit_is_learned(rate_limit: float) -> None:
     assert watch(3, stairs=RUNS, rate_limit=rate_limit)[0].rate_limit == pytest.approx(rate_limit, rel=0.015)
