@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
@@ -15,6 +16,7 @@ from control.scenarios import SCENARIOS, Scenario
 from control.trial import Opened, Trace, run_trial
 
 BenchFactory = Callable[[Scenario, int], Opened]
+GOAL_PERCENT = 0.3  # of travel, for the worst steady error
 NUMBERS = {"a1": "a1", "a2": "a2", "compliance": "compliance", "tau": "tau_s", "rate_limit": "rate_limit"}
 
 
@@ -87,6 +89,8 @@ def summary(results: Sequence[Result]) -> dict[str, dict[str, float]]:
         scores = [r.score for r in mine]
         table[name] = {
             "steady_worst": max(s.steady for s in scores),
+            "later_worst": max(s.later for s in scores),
+            "later_median": _median(s.later for s in scores),
             "steady_median": _median(s.steady for s in scores),
             "steady_spread": _seed_spread(mine),
             "peak_worst": max(s.peak for s in scores),
@@ -101,6 +105,16 @@ def summary(results: Sequence[Result]) -> dict[str, dict[str, float]]:
             "air_psi": float(np.mean([s.air_psi for s in scores])),
         }
     return table
+
+
+def wilson_percent(hits: int, of: int) -> tuple[float, float]:
+    """The 95 % interval of a share [%] of which `hits` of `of` were seen.
+
+    Source: Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 1927.
+    """
+    share, z = hits / of, 1.959964
+    middle, room = share + z * z / (2.0 * of), z * math.sqrt(share * (1.0 - share) / of + z * z / (4.0 * of * of))
+    return tuple(100.0 * (middle + sign * room) / (1.0 + z * z / of) for sign in (-1.0, 1.0))  # type: ignore[return-value]
 
 
 def by_scenario(results: Sequence[Result], key: str) -> dict[str, dict[str, tuple[float, float]]]:

@@ -10,7 +10,7 @@ import numpy as np
 from control.design import DesignModel
 from control.scenarios import TRAVEL_IN, Scenario, Segment
 
-FIRST_SEED = 7000  # below it, draws were tuned on, or looked at and what failed there was mended
+FIRST_SEED = 8000  # below it, draws were tuned on, or looked at and what failed there was mended
 
 
 def held_out(scenario: Scenario, seed: int) -> Scenario:

@@ -43,10 +43,10 @@ class HoldScore:
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """One trial. `steady` is the worst |mean error| of the last quarter of a hold, `peak` the worst momentary error
-    there, `ratio` the median over the settled steps, `close` the share of all steps that settle within 1.2 floors,
-    `unsettled` the share that never settled; `stem_in` is the way that the stem went [in], `air_psi` what was let in
-    (sum of pressure rises) [psi]."""
+    """One trial. `steady` is the worst |mean error| of the last quarter of a hold, `later` that without the first hold,
+    `peak` the worst momentary error there, `ratio` the median over the settled steps, `close` the share of all steps
+    that settle within 1.2 floors, `unsettled` the share that never settled; `stem_in` is the way that the stem went
+    [in], `air_psi` what was let in (sum of pressure rises) [psi]."""
 
     steady: float
     peak: float
@@ -59,6 +59,7 @@ class Score:
     cycle: float
     stem_in: float
     air_psi: float
+    later: float = float("nan")
 
 
 def score(trace: Trace, scenario: Scenario, valve: DesignModel) -> Score:
@@ -78,6 +79,7 @@ def score(trace: Trace, scenario: Scenario, valve: DesignModel) -> Score:
         overshoot=max(h.overshoot for h in holds),
         cycle=max(h.cycle for h in holds),
         stem_in=float(np.abs(np.diff(trace.truth_in)).sum()),
+        later=max(h.steady for h in holds[1:] or holds),
         air_psi=float(np.clip(np.diff(_smooth(trace.pressure_psi, 3)), 0.0, None).sum()),
     )
 

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 COLUMNS = (
     ("steady_worst", "worst steady error", "%", 2),
+    ("later_worst", "without the\nfirst hold", "%", 2),
     ("steady_median", "median", "%", 2),
     ("steady_spread", "over seeds", "%", 2),
     ("peak_worst", "worst moment", "%", 2),
@@ -33,7 +34,7 @@ COLUMNS = (
 @click.option("--controllers", "-c", default="", help="Names with commas between.  [default: all]")
 @click.option("--scenarios", "-s", default="", help="Names with commas between.  [default: all]")
 @click.option("--seeds", type=click.IntRange(1), default=2, show_default=True, help="Repeats with other chance.")
-@click.option("--first-seed", type=click.IntRange(0), help="Where they begin.  [default: 0, with --held-out 7000]")
+@click.option("--first-seed", type=click.IntRange(0), help="Where they begin.  [default: 0, with --held-out 8000]")
 @click.option("--held-out", is_flag=True, help="Other sizes and targets than those the controllers were tuned on.")
 @click.option("--period", type=click.FloatRange(0.02, 0.5), default=0.1, show_default=True, help="Tick [s].")
 @click.option("--design", type=click.Path(path_type=Path, dir_okay=False), help="What the controllers know (TOML).")
@@ -121,6 +122,7 @@ def _print(results: Sequence[Result], detail: str, title: str) -> None:
     for name in sorted(rows, key=lambda n: rows[n]["steady_worst"]):
         table.add_row(name, *(f"{rows[name][key]:.{digits}f}" for key, _, _, digits in COLUMNS))
     console().print(table)
+    click.echo("\n".join(_goal(results)))
     details = by_scenario(results, detail)
     names = [name.replace("_", "\n") for name in details]
     wide = new_table(f"{detail} by scenario, median over seeds (spread)", ("scenario", *names), left=("scenario",))
@@ -129,6 +131,22 @@ def _print(results: Sequence[Result], detail: str, title: str) -> None:
         wide.add_row(scenario, *cells)
     console().print(wide)
     click.echo(_permitted(results))
+
+
+def _goal(results: Sequence[Result]) -> list[str]:
+    """How many trials reach the goal, with 95 % intervals (Wilson's)."""
+    from control.compare import GOAL_PERCENT, wilson_percent
+
+    def share(hits: list[bool]) -> str:
+        low, high = wilson_percent(sum(hits), len(hits))
+        return f"{100.0 * sum(hits) / len(hits):.0f} % ({low:.0f} to {high:.0f} %)"
+
+    lines = []
+    for name in dict.fromkeys(r.job.controller for r in results):
+        mine = [r.score for r in results if r.job.controller == name]
+        near, still = share([s.steady <= GOAL_PERCENT for s in mine]), share([s.cycle == 0.0 for s in mine])
+        lines.append(f"{name}: {near} of {len(mine)} trials within {GOAL_PERCENT} %, {still} without a limit cycle")
+    return lines
 
 
 def _permitted(results: Sequence[Result]) -> str:

@@ -19,7 +19,7 @@ from control.scenarios import SCENARIOS
 if TYPE_CHECKING:
     from matplotlib.figure import Figure as Canvas
 
-SEEDS = 8
+SEEDS, RIVAL_SEEDS = 8, 2
 NAMES = {"steady": "worst steady error [% of travel]", "peak": "worst momentary error [% of travel]"}
 
 BOUNDS = (
@@ -34,6 +34,26 @@ BOUNDS = (
     "iterative learning of one pressure per hold comes down to 0.1 to 0.3 % after four passes of the same "
     "targets where the converter or the gauge is off, and stays above 0.4 % where the deadband is another, the "
     "noise large or the valve sticks."
+)
+
+
+MEASURES = (
+    "Settling is to 0.5 % and for good. The floor is the physical minimum of each step, computed from the plant's own "
+    "numbers: full supply, then none, switched at the last instant at which the far side of the band is not passed; "
+    "converter lag, dead time, ceiling of the supply, crossing of the deadband, rate limit and lag of the stem are in "
+    "it, twice where braking needs them; one tick is added, because a command goes out a tick after the reading, and "
+    "it is rounded up to a tick. A limit cycle is a swing of the true stem of more than 0.3 % (three standard "
+    "deviations of one reading, 0.0006 in) that turns at least three times after the first quarter of a hold and is "
+    "still there in the last third; one such hold in a trial counts, and repeated corrections count like any other "
+    "oscillation. `p` and `open_loop` never settle. The valve starts vented and the learning controllers start with "
+    "the design's numbers."
+)
+FIRST_HOLD = (
+    "Why the If-Then controllers do badly in the first hold: it begins vented, at 0 psi, where equation (3-1) is not "
+    "meant to be used; each decision adds a deadband, 9 s apart, and the one that starts somewhere between the curves "
+    "goes past the closing curve by what is left of the deadband (the overshoot in the table), and a hold of 30 or "
+    "40 s is over before that is put right. In the later holds the pressure is on a curve, as the rule supposes: "
+    '"median without the first hold" is what compares with the 1.3 % of figure 3-12, whose holds last 90 s.'
 )
 
 
@@ -121,37 +141,34 @@ def _percent(hits: Iterable[bool]) -> float:
 
 def figure_rivals(processes: int = 2) -> Entry:
     """The comparison."""
-    results = compare(controller_names(), 1, processes)
-    rows = summary(results)
+    rows = summary(results := compare(controller_names(), RIVAL_SEEDS, processes))
+    columns = (
+        ("worst steady error", "steady_worst", "%", 2),
+        ("without the first hold", "later_worst", "%", 2),
+        ("median steady error", "steady_median", "%", 2),
+        ("median without the first hold", "later_median", "%", 2),
+        ("over seeds", "steady_spread", "%", 2),
+        ("settling", "settling_s", "s", 1),
+        ("settling over floor", "ratio", "", 2),
+        ("overshoot", "overshoot", "%", 1),
+        ("trials with a limit cycle", "cycling_percent", "%", 0),
+        ("stem travel", "stem_in", "in", 1),
+        ("air", "air_psi", "psi", 0),
+    )
     numbers = []
     for name in sorted(rows, key=lambda n: rows[n]["steady_worst"]):
-        row = rows[name]
-        numbers += [
-            Number(f"`{name}`: worst steady error", None, row["steady_worst"], "%", 2),
-            Number(f"`{name}`: median steady error", None, row["steady_median"], "%", 2),
-            Number(f"`{name}`: settling", None, row["settling_s"], "s", 1),
-            Number(f"`{name}`: settling over floor", None, row["ratio"], "", 2),
-            Number(f"`{name}`: trials with a limit cycle", None, 100.0 * row["limit_cycles"], "%", 0),
-            Number(f"`{name}`: stem travel", None, row["stem_in"], "in", 1),
-            Number(f"`{name}`: air", None, row["air_psi"], "psi", 0),
-        ]
+        row = {**rows[name], "cycling_percent": 100.0 * rows[name]["limit_cycles"]}
+        numbers += [Number(f"`{name}`: {head}", None, row[key], unit, digits) for head, key, unit, digits in columns]
     return Entry(
         "rivals",
         "All controllers over all scenarios",
         "",
-        f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), one held-out seed each; errors of the true stem in the "
-        "last quarter of every hold, in percent of travel. Settling is to 0.5 % and for good. The floor is the "
-        "physical minimum of each step, computed from the plant's own numbers: full supply, then none, switched at "
-        "the last instant at which the far side of the band is not passed; converter lag, dead time, ceiling of the "
-        "supply, crossing of the deadband, rate limit and lag of the stem are in it, twice where braking needs them;"
-        " one tick is added, because a command goes out a tick after the reading, and it is rounded up to a tick. A "
-        "limit cycle is a swing of the true stem of more than 0.3 % (three standard deviations of one reading, "
-        "0.0006 in) that turns at least three times after the first quarter of a hold and is still there in the last"
-        " third; one such hold in a trial counts, and repeated corrections count like any other oscillation. `p` and"
-        " `open_loop` never settle. The valve starts vented and the learning controllers start with the design's "
-        "numbers.",
+        f"{len(SCENARIOS)} scenarios ({', '.join(SCENARIOS)}), {RIVAL_SEEDS} held-out seeds each; errors of the true "
+        'stem in the last quarter of every hold, in percent of travel; "over seeds" is the mean range of a scenario\'s '
+        f"trials. {MEASURES}",
         tuple(numbers),
         lambda canvas: _dots(canvas, results, "steady"),
         (7.2, 4.2),
-        "lostmotion compare --held-out --seeds 1",
+        f"lostmotion compare --held-out --seeds {RIVAL_SEEDS}",
+        notes=(FIRST_HOLD,),
     )
