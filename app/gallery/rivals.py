@@ -30,7 +30,7 @@ BOUNDS = (
     "sticks shows only after some pushes in vain. Where edges, calibration or dead time are not the design's, "
     "the first moves are for learning. Two things were tried and are not used "
     "(`python bench/dither_and_learning.py`): a square dither of 0.1 to 1 psi makes `brake` worse under "
-    "stiction (0.9 % and more instead of 0.6 %), shakes the stem and takes two to nine times the air; "
+    "stiction (0.5 to 0.9 % instead of 0.4 %), shakes the stem and takes three to eleven times the air; "
     "iterative learning of one pressure per hold comes down to 0.1 to 0.3 % after four passes of the same "
     "targets where the converter or the gauge is off, and stays above 0.4 % where the deadband is another, the "
     "noise large or the valve sticks."
