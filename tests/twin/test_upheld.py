@@ -15,7 +15,7 @@ from twin.diagnosis import Cause as Named
 from twin.diagnosis import Estimate
 from twin.effect import Scales
 from twin.fit.channel import position_channel
-from twin.fit.fitting import fit
+from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
 from twin.gap import GapParts, upheld
 from twin.plant import Inserted, Plant
@@ -116,6 +116,19 @@ def test_beside_what_the_readings_showed_nothing_is_named_for_an_error_below_the
     _, judgement = upheld(parts(0.99, 1.0, 0.9), both, 1.0, seen, True)
     assert judgement.verdict == "effect" and judgement.causes == (coarse,) and judgement.confusable == ()
     assert upheld(parts(3.0, 1.0, 0.9), both, 1.0, seen, True)[1] is both
+
+
+def test_sizes_that_are_unsure_one_by_one_may_be_sure_together() -> None:
+    form = effect("lvdt_nonlinearity").form("bow_and_swing")
+    space = make_space(
+        Plant(DesignModel()), (Cause("lvdt_nonlinearity", effect("lvdt_nonlinearity"), form),), (), Scales()
+    )
+    along, across = np.array([1.0, 1.0]) / np.sqrt(2.0), np.array([1.0, -1.0]) / np.sqrt(2.0)
+    normal = 100.0 * np.outer(along, along) + 1e-3 * np.outer(across, across)  # only their sum is known
+    for z, empty in ((0.5, False), (0.005, True)):
+        found = Fit(space, np.array([z, z]), 1.0, 0.0, np.zeros(1), normal, 1)
+        assert (found.deviations() > 2.0 * np.abs(space.unknowns[0].unit) * z).all()
+        assert hollow(found, 1.0) is empty
 
 
 def test_an_effect_without_a_size_is_hollow() -> None:

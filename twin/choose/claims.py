@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from logs.recording import FloatArray
 from twin.choose.score import Yardstick
 from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
@@ -29,23 +30,31 @@ def size_of(fit: Fit) -> int:
 
 
 def hollow(fit: Fit, phi: float) -> bool:
-    """Whether an effect of the hypothesis has no size: every size within a standard deviation of nothing.
+    """Whether an effect of the hypothesis has no size: its sizes together within a standard deviation of nothing.
 
     Its nuisances then do what it takes the credit for. `phi`: residual samples worth one independent one.
     """
     if not any(c.form is not None for c in fit.space.causes):
         return False
-    deviations = fit.deviations((phi * max(fit.mse, 1.0)) ** 0.5)
-    units = np.abs([u.unit for u in fit.space.unknowns])
+    covariance = phi * max(fit.mse, 1.0) * fit.covariance()
     at = len(fit.space.numbers)
     for cause in fit.space.causes:
         parameters = cause.form.parameters if cause.form is not None else ()
         sizes = [(at + k, p.smooth) for k, p in enumerate(parameters) if p.size]
         at += len(parameters)
         # where the response jumps no slope says how sure a size is
-        if sizes and all(smooth and abs(fit.z[k]) * units[k] < deviations[k] for k, smooth in sizes):
+        if sizes and all(smooth for _, smooth in sizes) and _is_nothing(fit, covariance, [k for k, _ in sizes]):
             return True
     return False
+
+
+def _is_nothing(fit: Fit, covariance: FloatArray, which: list[int]) -> bool:
+    """Whether these unknowns, each of which may be unsure alone, are together no further from 0 than chance takes them.
+
+    Source: Wald, Trans. Am. Math. Soc. 54 (1943) 426.
+    """
+    sizes = fit.z[which]
+    return float(sizes @ np.linalg.pinv(covariance[np.ix_(which, which)]) @ sizes) < len(which)
 
 
 def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:

@@ -41,13 +41,15 @@ class Fit:
         """The unknowns in their units."""
         return np.array([u.centre + u.unit * v for u, v in zip(self.space.unknowns, self.z, strict=True)])
 
+    def covariance(self) -> FloatArray:
+        """Of the unknowns in z, for residuals of their nominal noise; shape (unknowns, unknowns)."""
+        normal = self.normal + np.diag(1e-9 * np.maximum(np.diag(self.normal), 1e-9))
+        return np.asarray(np.linalg.pinv(normal)) if self.z.size else np.zeros((0, 0))
+
     def deviations(self, scale: float = 1.0) -> FloatArray:
         """Standard deviations of the unknowns in their units, for residuals `scale` times their nominal noise."""
-        if not self.z.size:
-            return np.zeros(0)
-        covariance = np.linalg.pinv(self.normal + np.diag(1e-9 * np.maximum(np.diag(self.normal), 1e-9)))
-        units = np.array([u.unit for u in self.space.unknowns])
-        deviations: FloatArray = scale * np.sqrt(np.maximum(np.diag(covariance), 0.0)) * np.abs(units)
+        units = np.abs([u.unit for u in self.space.unknowns])
+        deviations: FloatArray = scale * np.sqrt(np.maximum(np.diag(self.covariance()), 0.0)) * units
         return deviations
 
 
