@@ -9,6 +9,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.admit import admit
 from twin.assemble import assembled
+from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
@@ -122,12 +123,14 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     diagnosis = assembled(
         case, result, judgement, final, where, parts, itself.loud, settings.rules, settings.seed, known.notes
     )
+    floor = diagnosis.gap.noise_floor * case.travel / 100.0
+    apart = gap_by_condition(case, result, retuned, floor, settings.seed) if judgement.causes else None
     proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
     loop = closed_loop(known.recordings, final)
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
     model, units = _model(Plant(final.design, tuple(i for i in final.inserted if i not in late)), case)
-    diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop)
+    diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop, gap_by_condition=apart)
     if judgement.verdict == "unexplained":
         diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, itself.loud, itself.swing))
     return Outcome(diagnosis, known.recordings, model, units, before, again, after, parts, everything, proposal.file)

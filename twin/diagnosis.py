@@ -143,6 +143,7 @@ class Diagnosis:
     closed_loop: Mapping[str, object] = field(default_factory=dict)
     version: str = ""
     interrupted: bool = False
+    gap_by_condition: Gap | None = None
 
     def to_json(self) -> dict[str, object]:
         """Plain dicts, lists, numbers and None, ready for a strict JSON writer (no NaN, no infinity)."""
@@ -154,6 +155,7 @@ class Diagnosis:
             "ranking": [_ranked(line) for line in self.ranking],
             "where": _where(self.where),
             "gap": _gap(self.gap),
+            "gap_by_condition": self.gap_by_condition and _gap(self.gap_by_condition),
             "next_experiment": _next(self.next_experiment),
             "data_quality": [_note(note) for note in self.data_quality],
             "effects_tested": {test.name: _test(test) for test in self.effects_tested},

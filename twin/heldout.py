@@ -90,12 +90,24 @@ def _tie(one: Fit) -> tuple[FloatArray, FloatArray]:
 
 def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:
     """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count."""
+    return predict_folds(case, base, fits, channels, fold_weights(case), _folds_of_everything(case))
+
+
+def predict_folds(
+    case: Case,
+    base: Plant,
+    fits: Sequence[Fit],
+    channels: Sequence[Channel],
+    weights: Sequence[FloatArray],
+    folds: npt.NDArray[np.int64],
+) -> FloatArray:
+    """The same for folds of any kind: `weights[k]`, per row of the case, is 0 on what fold k predicts; `folds` says for
+    each row of the whole which fold that is."""
     whole = case.everything
     chain = chain_channel(whole.trials, whole.sigma_y)
-    folds = _folds_of_everything(case)
     error = np.full(chain.measured.size, np.nan)
-    for fold, weights in enumerate(fold_weights(case)):
-        plant = combined(base, refitted(fits, channels, weights)) if fits else base
+    for fold, fitted_on in enumerate(weights):
+        plant = combined(base, refitted(fits, channels, fitted_on)) if fits else base
         held = (folds == fold) & chain.use
         error[held] = (chain.measured - chain.prediction(plant))[held]
     return error

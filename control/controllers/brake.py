@@ -51,7 +51,7 @@ class Brake(Law[BrakeState]):
     """
 
     tolerance_in: float = 0.0007
-    sure: float = 1.25
+    sure: float = 1.0
     band_in: float = 0.0028
     again_in: float = 0.005
     short_in: float = 0.0005
