@@ -140,7 +140,10 @@ def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], 
     """Whether the causes leave too much of the gap where no fit has seen it."""
     left, gap = after**2 - floor**2, before**2 - floor**2
     if before <= CLEAR * floor:
-        return before > SLIGHT * floor and left > ERRATIC * gap
+        behind = any(
+            not apart or c.stage != "ep" for c in causes
+        )  # the others have the pressure to show for themselves
+        return behind and before > SLIGHT * floor and left > ERRATIC * gap
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
     several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1

@@ -50,6 +50,14 @@ def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, le
     assert kept.after[0] == left
 
 
+@pytest.mark.parametrize(("apart", "verdict"), [(True, "effect"), (False, "unexplained")])
+def test_a_cause_before_a_measured_pressure_is_not_judged_by_what_a_slight_gap_leaves(
+    apart: bool, verdict: str
+) -> None:
+    supply = replace(NAMED, causes=(Named("supply_saturation", "ep", 0.9, None, {}),))
+    assert upheld(parts(1.8, 1.9, 1.3), supply, 1.0, NOTHING_SEEN, apart)[1].verdict == verdict
+
+
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "no_gap"), (2.0, "unexplained")])
 def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, verdict: str) -> None:
     nothing = Judgement("no_gap", (), (), ())
