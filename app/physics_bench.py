@@ -24,22 +24,21 @@ class PhysicsBench:
         self.physics = physics
         self._clock = clock
         self._command = 0.0
-        self._unit = unit
-        self._highest = highest
-
-    @property
-    def info(self) -> BenchInfo:
-        return BenchInfo(
+        self._info = BenchInfo(
             name="virtual valve without a wire",
             port="none",
-            command_unit=self._unit,
+            command_unit=unit,
             command_min=0.0,
-            command_max=self._highest if self._unit == "psi" else 100.0,
+            command_max=highest if unit == "psi" else 100.0,
             safe_command=0.0,
             travel_in=0.5625,
             min_period_s=0.0,
             has_pressure=True,
         )
+
+    @property
+    def info(self) -> BenchInfo:
+        return self._info
 
     def __enter__(self) -> Self:
         return self
@@ -52,7 +51,7 @@ class PhysicsBench:
     def exchange(self, command_psi: float) -> Sample:
         now_s = self._clock.now_s()
         seen = self.physics.advance(now_s, self._command)
-        self._command = min(max(command_psi, self.info.command_min), self.info.command_max)
+        self._command = min(max(command_psi, self._info.command_min), self._info.command_max)
         return Sample(
             now_s,
             self._command,
