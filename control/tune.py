@@ -124,9 +124,8 @@ def hunts(loop: LinearLoop, design: DesignModel) -> bool:
     N vanishes for small amplitudes, so that from there the loop goes to a stable limit cycle, or grows without end.
     """
     amplitudes = 0.5 * design.deadband * (1.0 + np.geomspace(1e-3, 1e3, 80))
-    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 600)
     n = play_describing_function(amplitudes, design.deadband, design.compliance)
-    turned = loop(omega)[:, None] * n
+    turned = loop(loop.frequencies(600))[:, None] * n
     before, after = turned[:-1], turned[1:]
     crossing = np.sign(before.imag) != np.sign(after.imag)
     share = before.imag[crossing] / (before.imag[crossing] - after.imag[crossing])
@@ -136,8 +135,7 @@ def hunts(loop: LinearLoop, design: DesignModel) -> bool:
 
 def phase_margin(loop: LinearLoop, design: DesignModel) -> float:
     """Of the linear loop with the play's full slope [degrees]; infinite where the gain never reaches 1."""
-    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 4000)
-    line = loop(omega) * design.compliance
+    line = loop(loop.frequencies(4000)) * design.compliance
     crossing = np.nonzero((np.abs(line[:-1]) >= 1.0) & (np.abs(line[1:]) < 1.0))[0]
     if crossing.size == 0:
         return float("inf")

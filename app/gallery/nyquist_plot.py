@@ -46,8 +46,7 @@ def nyquist(axes: Axes, loops: Sequence[LinearLoop], design: DesignModel) -> Non
     _axes(axes)
     for number, loop in enumerate(loops):
         colour = colormaps["viridis"](0.85 * number / max(len(loops) - 1, 1))
-        omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 6000)
-        line = _scaled(loop, omega, design)
+        line = _scaled(loop, loop.frequencies(6000), design)
         cycles = predict(loop, design)
         shown = [cycle for cycle in cycles if cycle.stable] or cycles
         meets = [f"A = {c.pressure_psi:.2f} psi, {c.omega:.2f} rad/s" for c in shown[-1:]]

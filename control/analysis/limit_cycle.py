@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 import numpy.typing as npt
@@ -12,7 +11,10 @@ from control.analysis.describing import play_describing_function
 from control.analysis.loop import LinearLoop
 from control.design import DesignModel
 
+ComplexArray = npt.NDArray[np.complex128]
 FloatArray = npt.NDArray[np.float64]
+Indices = npt.NDArray[np.intp]
+WITHIN = np.geomspace(1.0 / 1.2, 1.2, 60)  # of a frequency: where its neighbour's crossing is looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,73 +40,70 @@ def predict(loop: LinearLoop, design: DesignModel, n: int = 600, points: int = 4
     For every amplitude the frequency is found at which L(jw) N(A) is real and negative; its modulus goes through 1 at
     a limit cycle, and falls with the amplitude where the cycle is stable.
     """
-    half = 0.5 * design.deadband
-    amplitudes = half * (1.0 + np.geomspace(1e-3, 50.0, n))
-    found: list[LimitCycle] = []
-    for low, high, omega_low in _frequencies(loop, design, amplitudes, points):
-        before, after = _excess(loop, design, low, omega_low), _excess(loop, design, high, omega_low)
-        if np.isnan(before) or np.isnan(after) or before * after > 0.0:
-            continue
-        amplitude, omega = _bisect(loop, design, low, high, omega_low)
-        output = amplitude * abs(_play(design, amplitude))
-        stem = output * abs(complex(loop.after_play(np.array([omega]))[0]))
-        found.append(LimitCycle(amplitude, stem, omega, before > 0.0 > after))
-    return found
+    amplitudes = 0.5 * design.deadband * (1.0 + np.geomspace(1e-3, 50.0, n))
+    at, near = _frequencies(loop, _play(design, amplitudes[:-1]), points)
+    low, high = amplitudes[at], amplitudes[at + 1]
+    before, after = _excess(loop, design, low, near), _excess(loop, design, high, near)
+    crosses = before * after <= 0.0  # not so where one of them is NaN
+    amplitude = _bisect(loop, design, low[crosses], high[crosses], near[crosses])
+    slope = _play(design, amplitude)
+    omega = _real_axis(loop, slope, near[crosses])
+    stem = amplitude * np.abs(slope * loop.after_play(omega))
+    stable = (before > 0.0) & (after < 0.0)
+    columns = zip(amplitude.tolist(), stem.tolist(), omega.tolist(), stable[crosses].tolist(), strict=True)
+    return [LimitCycle(*column) for column in columns]
 
 
 def grows(loop: LinearLoop, design: DesignModel) -> bool:
     """Whether the loop is unstable with the play wide open, so that oscillations beyond some size grow without end."""
-    omega = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, 2000)
-    line = loop(omega) * design.compliance
+    line = loop(loop.frequencies(2000)) * design.compliance
     crossing = (np.diff(np.sign(line.imag)) != 0) & (line.real[:-1] < -1.0)
     return bool(crossing.any())
 
 
-def _frequencies(
-    loop: LinearLoop, design: DesignModel, amplitudes: FloatArray, points: int
-) -> list[tuple[float, float, float]]:
-    """Neighbouring amplitudes, with every frequency at which the lower one makes the loop real and negative."""
-    grid = np.geomspace(1e-3, np.pi / loop.tick_s if loop.tick_s else 1e3, points)
-    line = loop(grid)
-    triples = []
-    for low, high in pairwise(amplitudes):
-        turned = line * _play(design, float(low))
+def _frequencies(loop: LinearLoop, slopes: ComplexArray, points: int) -> tuple[Indices, FloatArray]:
+    """The frequencies [rad/s] at which one of the play's `slopes` makes the loop real and negative, and the places of
+    those slopes; as near as a grid of `points` tells."""
+    grid = loop.frequencies(points)
+    line, places, found = loop(grid), [], []
+    for place, slope in enumerate(slopes):
+        turned = line * slope
         crossing = np.nonzero((np.diff(np.sign(turned.imag)) != 0) & (turned.real[:-1] < 0.0))[0]
-        triples += [(float(low), float(high), float(grid[i])) for i in crossing]
-    return triples
+        places.append(np.full(crossing.size, place))
+        found.append(grid[crossing])
+    return np.concatenate(places), np.concatenate(found)
 
 
-def _play(design: DesignModel, amplitude: float) -> complex:
-    return complex(play_describing_function(np.array([amplitude]), design.deadband, design.compliance)[0])
+def _play(design: DesignModel, amplitudes: FloatArray) -> ComplexArray:
+    return play_describing_function(amplitudes, design.deadband, design.compliance)
 
 
-def _real_axis(loop: LinearLoop, n: complex, near: float) -> float:
-    """The frequency near `near` at which L N is real [rad/s]; NaN where there is none within 20 %."""
-    low, high = near / 1.2, near * 1.2
-    grid = np.geomspace(low, high, 60)
-    imaginary = (loop(grid) * n).imag
-    crossing = np.nonzero(np.diff(np.sign(imaginary)) != 0)[0]
-    if crossing.size == 0:
-        return float("nan")
-    i = crossing[np.argmin(np.abs(np.log(grid[crossing] / near)))]
-    share = imaginary[i] / (imaginary[i] - imaginary[i + 1])
-    return float(grid[i] + share * (grid[i + 1] - grid[i]))
+def _real_axis(loop: LinearLoop, slopes: ComplexArray, near: FloatArray) -> FloatArray:
+    """The frequencies nearest `near` at which L N is real [rad/s]; NaN where there is none within 20 %."""
+    grid, row = near[:, None] * WITHIN, np.arange(near.size)
+    imaginary = (loop(grid) * slopes[:, None]).imag
+    crosses = np.diff(np.sign(imaginary)) != 0
+    i = np.where(crosses, np.abs(np.log(WITHIN[:-1])), np.inf).argmin(axis=1)
+    before, after = imaginary[row, i], imaginary[row, i + 1]
+    with np.errstate(invalid="ignore", divide="ignore"):  # where nothing crosses
+        share = before / (before - after)
+    found = grid[row, i] + share * (grid[row, i + 1] - grid[row, i])
+    return np.where(crosses.any(axis=1), found, np.nan)
 
 
-def _excess(loop: LinearLoop, design: DesignModel, amplitude: float, near: float) -> float:
-    """|L N| - 1 where L N is real and negative."""
-    n = _play(design, amplitude)
-    omega = _real_axis(loop, n, near)
-    if np.isnan(omega):
-        return float("nan")
-    return float(abs(complex(loop(np.array([omega]))[0]) * n) - 1.0)
+def _excess(loop: LinearLoop, design: DesignModel, amplitudes: FloatArray, near: FloatArray) -> FloatArray:
+    """|L N| - 1 where L N is real and negative; NaN where it is not."""
+    slopes = _play(design, amplitudes)
+    omega = _real_axis(loop, slopes, near)
+    with np.errstate(invalid="ignore"):  # NaN goes through
+        return np.asarray(np.abs(loop(omega) * slopes) - 1.0)
 
 
-def _bisect(loop: LinearLoop, design: DesignModel, low: float, high: float, near: float) -> tuple[float, float]:
+def _bisect(loop: LinearLoop, design: DesignModel, low: FloatArray, high: FloatArray, near: FloatArray) -> FloatArray:
+    """The amplitudes between `low` and `high` at which |L N| goes through 1."""
     sign = np.sign(_excess(loop, design, low, near))
     for _ in range(40):
         middle = 0.5 * (low + high)
-        low, high = (middle, high) if np.sign(_excess(loop, design, middle, near)) == sign else (low, middle)
-    amplitude = 0.5 * (low + high)
-    n = _play(design, amplitude)
-    return amplitude, _real_axis(loop, n, near)
+        same = np.sign(_excess(loop, design, middle, near)) == sign
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return 0.5 * (low + high)

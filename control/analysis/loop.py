@@ -62,6 +62,10 @@ class LinearLoop:
         """The whole linear part [psi/in]; the play, with its slope in in/psi, closes the loop."""
         return self.before_play(omega) * self.after_play(omega)
 
+    def frequencies(self, points: int) -> FloatArray:
+        """A grid from 0.001 rad/s to where sampling ends, or to 1000 rad/s in continuous time, shape (points,)."""
+        return np.geomspace(1e-3, np.pi / self.tick_s if self.tick_s else 1e3, points)
+
     def _integrator(self, omega: FloatArray) -> ComplexArray:
         if self.tick_s == 0.0:
             return _complex(1.0 / (1j * omega))

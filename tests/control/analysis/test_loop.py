@@ -64,3 +64,8 @@ def test_a_late_reading_turns_the_whole_loop_and_dead_time_not_that_of_an_accumu
         assert (np.abs(dead) < np.abs(plain)).all()  # it adds up more slowly
     else:
         assert np.abs(dead / turned - 1.0).max() < 1e-12
+
+
+def test_the_grid_ends_where_sampling_does() -> None:
+    assert LinearLoop("p", 3.0, tick_s=0.2).frequencies(7)[[0, -1]] == pytest.approx([1e-3, np.pi / 0.2])
+    assert LinearLoop("p", 3.0, tick_s=0.0).frequencies(7)[[0, -1]] == pytest.approx([1e-3, 1e3])
