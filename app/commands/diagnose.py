@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from app.options import bench_options, profile_of, sealed_option
+from app.records import foreign_options
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -33,15 +34,7 @@ _IDENTIFIED = 0.2
 @click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--design", type=click.Path(path_type=Path), help="Design model file; without it the thesis's numbers.")
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for diagnosis.json, report, model.")
-@click.option("--map", "mapping", help="Columns of a foreign file: time=COL,command=COL,pressure=COL,position=COL.")
-@click.option("--units", help="Units of a foreign file: command=kPa,position=mm,time=ms.")
-@click.option(
-    "--command-timing",
-    type=click.Choice(["before", "after", "unknown"]),
-    default="before",
-    show_default=True,
-    help="Which interval a row's command belongs to.",
-)
+@foreign_options
 @click.option("--active", is_flag=True, help="Run the experiments that tell most on the bench, until it is sure.")
 @click.option(
     "--budget-minutes", type=float, default=60.0, show_default=True, metavar="N", help="Bench time of --active [min]."

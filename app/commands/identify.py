@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from app.records import foreign_options
+
 if TYPE_CHECKING:
     from control.identify_result import Estimate, Identified
     from logs.recording import Recording
@@ -19,15 +21,7 @@ if TYPE_CHECKING:
 @click.command(name="identify", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
 @click.argument("runs", metavar="RUN...", nargs=-1, required=True, type=click.Path(path_type=Path))
 @click.option("--out", metavar="MODEL.toml", required=True, type=click.Path(path_type=Path), help="The model file.")
-@click.option("--map", "mapping", metavar="time=COL,...", help="Columns of a foreign file.")
-@click.option("--units", metavar="command=kPa,...", help="Units of a foreign file.")
-@click.option(
-    "--command-timing",
-    type=click.Choice(["before", "after", "unknown"]),
-    default="before",
-    show_default=True,
-    help="Which interval a row's command belongs to.",
-)
+@foreign_options
 @click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw record, model and residual.")
 @click.option("--json", "as_json", is_flag=True, help="Print everything as JSON.")
 def command(
@@ -39,10 +33,10 @@ def command(
     plot: Path | None,
     as_json: bool,
 ) -> None:
+    from app.recordings import load_all
     from control.design import save_design
     from control.identify import identify
     from hal.errors import BadInput
-    from logs.load import load_recording
 
     if out.suffix != ".toml":
         raise BadInput(f"--out {out}: a model file ends in .toml")
@@ -50,11 +44,7 @@ def command(
         from app.fit_picture import check_target
 
         check_target(plot)
-    timing: object = command_timing
-    recordings = [
-        load_recording(path, mapping=mapping, units=units, command_timing=timing)  # type: ignore[arg-type]
-        for path in runs
-    ]
+    recordings = load_all(runs, mapping, units, command_timing)
     found = identify(recordings)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)

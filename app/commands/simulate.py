@@ -7,24 +7,22 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING
 
 import click
 
+from app.records import foreign_options
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
-    from logs.recording import CommandTiming, FloatArray, Recording
+    from logs.recording import FloatArray, Recording
 
 
 @click.command(name="simulate", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
 @click.argument("model", metavar="MODEL.toml", type=click.Path(path_type=Path))
 @click.argument("run", metavar="RUN", type=click.Path(path_type=Path))
 @click.option("--out", required=True, metavar="FILE.csv", type=click.Path(path_type=Path), help="Where the columns go.")
-@click.option("--map", "mapping", metavar="time=COL,...", help="Which columns are which, in a foreign file.")
-@click.option("--units", metavar="command=kPa,...", help="Units of the columns of a foreign file.")
-@click.option("--command-timing", type=click.Choice(["before", "after", "unknown"]), default="before",
-              show_default=True, help="Whether a row's command was in force before or after its readings.")  # fmt: skip
+@foreign_options
 @click.option("--plot", metavar="FILE.png", type=click.Path(path_type=Path), help="Draw record, model and residual.")
 @click.option("--json", "as_json", is_flag=True, help="Print the figures as JSON.")
 def command(
@@ -38,8 +36,8 @@ def command(
     as_json: bool,
 ) -> None:
     from app.fit_picture import Replay, check_target, draw
+    from app.recordings import load_all
     from control.design import load_design
-    from logs.load import load_recording
     from twin.insert import plant_of
     from twin.model_units import in_units_of
     from twin.simulate import simulate_recording
@@ -47,8 +45,7 @@ def command(
     if plot is not None:
         check_target(plot)
     design = load_design(model)
-    timing = cast("CommandTiming", command_timing)
-    recording = load_recording(run, mapping=mapping, units=units, command_timing=timing)
+    (recording,) = load_all([run], mapping, units, command_timing)
     try:
         plant = plant_of(in_units_of(design, recording.pressure_unit, recording.position_unit))
     except BadInput as error:
