@@ -57,7 +57,7 @@ def study(
     """Every loop predicted, balanced and measured, one after the other; the conditions are in `CONDITIONS`."""
     for loop in loops:
         cycles = tuple(find_cycles(loop, design))
-        over_modbus = measure_wired(loop, design) if wired else None
+        over_modbus = measure_wired(loop, design, duration_s) if wired else None
         found = measured(loop, design, duration_s)
         yield Case(loop, predicted(loop, design), cycles, found, grows(loop, design), over_modbus)
 

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 
+import app.hunting
 from app.commands.analyse import command as analyse
 from app.commands.compare import command as compare
 from app.physics_bench import open_virtual
@@ -94,7 +96,8 @@ def test_analyse_a_sweep_over_dead_time(tmp_path: Path) -> None:
     assert picture.stat().st_size > 1000
 
 
-def test_analyse_over_modbus_with_the_real_stops() -> None:
+def test_analyse_over_modbus_with_the_real_stops(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(app.hunting, "study", partial(app.hunting.study, duration_s=300.0))  # of 1200, for speed
     done = CliRunner().invoke(analyse, ["--law", "pi", "--ki", "8", "--modbus", "--json"], catch_exceptions=False)
     (case,) = json.loads(done.stdout)
     assert 2.0 * case["measured"]["stem_in"] > DESIGN.travel > 2.0 * case["wired"]["stem_in"]

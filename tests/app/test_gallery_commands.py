@@ -5,11 +5,13 @@ from __future__ import annotations
 import re
 import shlex
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+import app.hunting
 import app.rivals
 from app.cli import run
 from app.gallery.if_then import LINE
@@ -57,6 +59,7 @@ def test_a_line_runs_to_its_end(
 ) -> None:
     everything = app.rivals.run_all
     monkeypatch.setattr(app.rivals, "run_all", lambda todo, processes: everything(todo[:1], 1))  # of hundreds
+    monkeypatch.setattr(app.hunting, "study", partial(app.hunting.study, duration_s=30.0))  # of 1200
     monkeypatch.chdir(folder)
     for part in lines()[key].split(" && "):
         program, verb, *words = shlex.split(part)
