@@ -27,11 +27,6 @@ def run(job: Job) -> Result:
 
 def run_all(jobs: Sequence[Job], processes: int) -> Iterator[Result]:
     """The results, in the order of the jobs. Every job has its own seed, so the number of processes changes nothing."""
-    if processes <= 1:
-        yield from map(run, jobs)
-        return
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
+    from app.processes import in_order
 
-    with ProcessPoolExecutor(processes, mp_context=get_context("spawn")) as pool:
-        yield from pool.map(run, jobs, chunksize=max(len(jobs) // (processes * 8), 1))
+    return in_order(run, jobs, processes)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import signal
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
@@ -87,15 +86,7 @@ def lasting(job: Job) -> Margin:
 
 
 def run_all(todo: Sequence[Job], processes: int) -> Iterator[Nominal | Margin]:
-    """The answers, in the order of the jobs; the number of processes changes nothing. Left early, it ends them all."""
-    if processes <= 1:
-        yield from map(run, todo)
-        return
-    from multiprocessing import get_context
+    """The answers, in the order of the jobs."""
+    from app.processes import in_order
 
-    with get_context("spawn").Pool(processes, initializer=_leave_interrupts_to_the_parent) as pool:
-        yield from pool.imap(run, todo)
-
-
-def _leave_interrupts_to_the_parent() -> None:
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    return in_order(run, todo, processes)

@@ -3,21 +3,18 @@
 from __future__ import annotations
 
 import json
-import multiprocessing
-import os
-import signal
 from collections.abc import Callable, Generator, Iterator, Sequence
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, wait
 from concurrent.futures.process import BrokenProcessPool
 from pathlib import Path
 from typing import Any
 
 from app.blind.trial import Order, run_trial
-from hal.errors import BadInput, JobFailed
+from app.processes import workers
+from hal.errors import BadInput
 
 Line = dict[str, Any]
 RESULTS = "trials.jsonl"
-_THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def read_lines(out: Path) -> list[Line]:
@@ -49,23 +46,13 @@ def run_all(
 
     A trial that fails is a result with an `error`, because what breaks the program is a finding about it too.
     """
-    for name in _THREADS:
-        os.environ.setdefault(name, "1")  # read by a worker when it imports numpy
     _cut_last_line(out / RESULTS)
-    context = multiprocessing.get_context("spawn")
-    with (out / RESULTS).open("a", encoding="utf-8") as file:
-        pool = ProcessPoolExecutor(processes, context, initializer=_deaf)
-        try:
-            jobs = {pool.submit(trial, order): order for order in todo}
-            for line in _finished(jobs):
-                file.write(json.dumps(line) + "\n")
-                file.flush()
-                yield line
-        finally:
-            pool.shutdown(wait=False, cancel_futures=True)
-            # A run that records takes a signal as the wish to stop *it*; its valve is virtual, so it can just end.
-            for child in multiprocessing.active_children():
-                child.kill()
+    with (out / RESULTS).open("a", encoding="utf-8") as file, workers(processes) as pool:
+        jobs = {pool.submit(trial, order): order for order in todo}
+        for line in _finished(jobs):
+            file.write(json.dumps(line) + "\n")
+            file.flush()
+            yield line
 
 
 def _finished(jobs: dict[Future[Line], Order]) -> Iterator[Line]:
@@ -76,17 +63,10 @@ def _finished(jobs: dict[Future[Line], Order]) -> Iterator[Line]:
             error = job.exception()
             if error is None:
                 yield job.result()
-            elif isinstance(error, BrokenProcessPool):
-                raise JobFailed("a worker was killed, for want of memory perhaps; give the command again") from error
-            elif not isinstance(error, Exception):
-                raise error  # Ctrl-C reached the worker first
+            elif isinstance(error, BrokenProcessPool) or not isinstance(error, Exception):
+                raise error  # a worker is gone, or Ctrl-C reached it first
             else:
                 yield {"trial": jobs[job].number, "seal": jobs[job].seal, "error": f"{type(error).__name__}: {error}"}
-
-
-def _deaf() -> None:
-    """A worker does not hear Ctrl-C: its master does, and ends it."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def _cut_last_line(path: Path) -> None:

@@ -1,0 +1,34 @@
+"""Several processes: the same results in the same order, and none left when it ends."""
+
+from __future__ import annotations
+
+import math
+import multiprocessing
+import os
+from collections.abc import Generator
+from typing import Any, cast
+
+import pytest
+
+from app.processes import in_order
+from hal.errors import JobFailed
+
+
+def test_results_come_in_the_order_of_the_work() -> None:
+    todo = [30, 2, 20, 1]
+    assert list(in_order(math.factorial, todo, 2)) == list(in_order(math.factorial, todo, 1))
+
+
+def test_left_early_no_process_stays() -> None:
+    results = cast("Generator[int, Any, None]", in_order(abs, [-1, -2, -3], 2))
+    assert next(results) == 1
+    assert multiprocessing.active_children()
+    results.close()
+    for child in multiprocessing.active_children():
+        child.join(5.0)
+    assert not multiprocessing.active_children()
+
+
+def test_a_worker_that_is_killed_is_said() -> None:
+    with pytest.raises(JobFailed, match="a worker was killed"):
+        list(in_order(os._exit, [3], 2))
