@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict, TypeVar
@@ -76,18 +77,20 @@ def plant_options(effects: Sequence[str] = (), plant: Sequence[str] = ()) -> dic
 
 
 def sizes(words: Sequence[str], option: str, example: str) -> dict[str, float]:
-    """`NAME=SIZE` words of an option. Raises: `BadInput` for a word of another form."""
+    """`NAME=SIZE` words of an option. Raises: `BadInput` for a word of another form, or a size that is not finite."""
     from hal.errors import BadInput
 
     found = {}
     for word in words:
         name, equals, size = word.partition("=")
         try:
-            if not (name.strip() and equals):
-                raise ValueError
             found[name.strip()] = float(size)
+            if not (name.strip() and equals and math.isfinite(found[name.strip()])):
+                raise ValueError
         except ValueError as error:
-            raise BadInput(f"{option} {word!r} is not of the form NAME=SIZE, for example {example}") from error
+            raise BadInput(
+                f"{option} {word!r} is not of the form NAME=SIZE with a finite size, for example {example}"
+            ) from error
     return found
 
 

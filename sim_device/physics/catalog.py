@@ -26,7 +26,7 @@ def _module(name: str) -> ModuleType:
     return import_module(f"sim_device.physics.plant_{name}")
 
 
-def make_physics(name: str, seed: int = 0, **options: object) -> ValvePhysics:
+def make_physics(name: str, seed: int = 0, /, **options: object) -> ValvePhysics:
     """A fresh valve of plant `name`, deterministic for `seed`.
 
     Options are the plant's own; all have `effects` (effect name to size) and `noise` (a factor, 0 is none).

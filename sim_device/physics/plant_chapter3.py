@@ -20,7 +20,7 @@ EFFECTS: Mapping[str, float] = {"ep_deadband/play": HELD_PSI, "ep_calibration/ze
 
 
 def make(
-    seed: int, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
+    seed: int, /, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
 ) -> ValvePhysics:
     """The bench with `effects` besides or instead (`{"ep_deadband/play": 0}`), or other design numbers (`a1=9.0`).
 

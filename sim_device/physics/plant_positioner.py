@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 from sim_device.physics.imperfection import Imperfection
 from sim_device.physics.parameters import split
@@ -11,25 +10,20 @@ from sim_device.valve import ValvePhysics
 
 
 def make(
-    seed: int,
-    *,
-    noise: float = 1.0,
-    effects: Mapping[str, float] | None = None,
-    pilot: Mapping[str, float] | None = None,
-    **numbers: float,
+    seed: int, /, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
 ) -> ValvePhysics:
-    """A valve under its positioner, with `effects` of the valve, or other numbers: of the pilot (`supply=13.0`, also as
-    `pilot`) and of the valve's design.
+    """A valve under its positioner, with `effects` of the valve, or other numbers: the pilot's (`supply=13.0`) and
+    those of the valve's design.
 
-    Raises: `BadInput` for names, forms or sizes that this plant does not have; `TypeError` for an unknown pilot number.
+    Raises: `BadInput` for names, forms or sizes that this plant does not have.
     """
     from sim_device.physics.positioner.plant import Pilot, PositionerValve
     from sim_device.physics.thesis.plant import checked_design
 
     known = Pilot.__dataclass_fields__
-    settings: dict[str, Any] = {**(pilot or {}), **{name: numbers.pop(name) for name in known if name in numbers}}
-    rest, design = split({"friction_in_motion": 1.0, **(effects or {})}, checked_design(numbers))
-    return PositionerValve(seed, Pilot(**settings), design, rest, noise)
+    pilot = Pilot(**{name: numbers.pop(name) for name in known if name in numbers})
+    rest, design = split({"friction_in_motion": 1.0, **(effects or {})}, checked_design(numbers, known))
+    return PositionerValve(seed, pilot, design, rest, noise)
 
 
 def imperfections() -> tuple[Imperfection, ...]:

@@ -9,7 +9,7 @@ from sim_device.valve import ValvePhysics
 
 
 def make(
-    seed: int, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
+    seed: int, /, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
 ) -> ValvePhysics:
     """A healthy valve, or with `effects` ({"stiction": 0.4}) or other parts (`viscous=9e4`, SI units, see `Build`).
 

@@ -10,7 +10,7 @@ from sim_device.valve import ValvePhysics
 
 
 def make(
-    seed: int, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
+    seed: int, /, *, noise: float = 1.0, effects: Mapping[str, float] | None = None, **numbers: float
 ) -> ValvePhysics:
     """A healthy valve of table 2-1, or with `effects` ({"stiction": 0.4}) or other design numbers (`a1=9.0`).
 

@@ -45,8 +45,13 @@ def test_effects_and_numbers_reach_the_plant() -> None:
         assert session.virtual["options"] == {"a1": 9.0, "effects": {"stiction": 0.4}}
     with open_bench(effects=("stiction=0.4",), plant=("compliance=0.18", "noise=0")) as session:
         assert session.virtual["options"] == {"compliance": 0.18, "noise": 0.0, "effects": {"stiction": 0.4}}
-    for wrong in ({"effects": ("stiction=big",)}, {"plant": ("a1",)}, {"plant": ("effects=1",)}, {"plant": ("a9=1",)}):
-        with pytest.raises(BadInput, match=r"NAME=SIZE|--effect|its numbers are"), open_bench(**wrong):
+    for wrong in ({"effects": ("stiction=big",)}, {"plant": ("a1",)}, {"plant": ("noise=nan",)}):
+        with pytest.raises(BadInput, match="NAME=SIZE"), open_bench(**wrong):
+            pass
+    with pytest.raises(BadInput, match="there is --effect"), open_bench(plant=("effects=1",)):
+        pass
+    for unknown in ("a9=1", "seed=3"):
+        with pytest.raises(BadInput, match="its numbers are"), open_bench(plant=(unknown,)):
             pass
     with pytest.raises(BadInput, match="leave them out with --port"), open_bench("/dev/absent", plant=("a1=9",)):
         pass

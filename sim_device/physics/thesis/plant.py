@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from hal.errors import BadInput
 from sim_device.physics.imperfection import Imperfection, choose
@@ -43,14 +43,14 @@ class ThesisValve:
         return Outputs(pressure_psi, position_in, float(self.state["supply"][0]), 22.0)
 
 
-def checked_design(numbers: Mapping[str, float]) -> DesignNumbers:
-    """Design numbers with some replaced.
+def checked_design(numbers: Mapping[str, float], others: Iterable[str] = ()) -> DesignNumbers:
+    """Design numbers with some replaced; `others` are what the plant has besides, for the message.
 
     Raises: `BadInput` for an unknown name, or numbers that make no valve.
     """
     unknown = sorted(set(numbers) - set(DesignNumbers.__dataclass_fields__))
     if unknown:
-        known = ", ".join(DesignNumbers.__dataclass_fields__)
+        known = ", ".join((*DesignNumbers.__dataclass_fields__, *others))
         raise BadInput(f"option '{unknown[0]}' is not known to this plant; its numbers are {known}")
     design = DesignNumbers(**{name: float(value) for name, value in numbers.items()})
     for name in ("ep_tau", "compliance", "tau", "rate_limit", "travel"):

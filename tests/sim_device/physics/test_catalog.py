@@ -104,7 +104,13 @@ def test_what_the_valve_does_hardly_depends_on_how_often_it_is_asked(plant: str)
         ("thesis", {"mass": 5.0}, "option 'mass' is not known"),
         ("reference", {"a1": 5.0}, "option 'a1' is not known"),
         ("reference", {"mass": -5.0}, "'mass' is -5.0; it must be 0 or above"),
-        ("positioner", {"pilot": {"colour": 1.0}}, "does not take these options"),
+        (
+            "positioner",
+            {"colour": 1.0},
+            "its numbers are ep_tau, a1, a2, compliance, tau, rate_limit, travel, lever_rad",
+        ),
+        ("reference", {"seed": 3.0}, "option 'seed' is not known"),
+        ("chapter3", {"name": 3.0}, "option 'name' is not known"),
     ],
 )
 def test_what_cannot_be_made_is_refused_in_one_sentence(plant: str, options: dict[str, object], words: str) -> None:

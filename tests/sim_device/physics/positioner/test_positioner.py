@@ -47,10 +47,10 @@ def test_the_hunting_swings_the_pressure_across_the_deadband_of_the_valve() -> N
 
 
 def test_faster_air_hunts_wider() -> None:
-    assert np.ptp(settled(40.0, pilot={"fill_tau": 4.0, "exhaust_tau": 20.0})) > 1.2 * np.ptp(settled(40.0))
+    assert np.ptp(settled(40.0, fill_tau=4.0, exhaust_tau=20.0)) > 1.2 * np.ptp(settled(40.0))
 
 
 def test_a_pilot_with_a_wide_deadband_rests_off_target_instead() -> None:
-    position = settled(40.0, pilot={"opens": 0.05, "closes": 0.045, "leak": 0.0})
+    position = settled(40.0, opens=0.05, closes=0.045, leak=0.0)
     assert np.ptp(position) < 0.01
     assert abs(position[-1] - 40.0) > 3.0
