@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from control.compare import GOAL_PERCENT, Result, jobs, wilson_percent
+from app.interval import share
+from control.compare import Result, jobs
 from control.design import DesignModel
+from control.metrics import GOAL_PERCENT
 from control.scenarios import SCENARIOS
 
 BEGIN, END = "<!-- made by bench/held_out.py: begin -->", "<!-- end -->"
@@ -97,17 +99,12 @@ def _row(name: str, parts: Sequence[Mapping[str, Sequence[float | None]]]) -> st
 def _goal(found: Stored) -> str:
     parts = list(found["trials"].values())
     steady, cycle, close = (_all(parts, key) for key in ("steady", "cycle", "close"))
-    near, still = _share([value <= GOAL_PERCENT for value in steady]), _share([value == 0.0 for value in cycle])
+    near, still = share([value <= GOAL_PERCENT for value in steady], 1), share([value == 0.0 for value in cycle], 1)
     return (
         f"{near} of trials within {GOAL_PERCENT} %, the worst {max(steady):.2f} %; {still} without a limit cycle; "
         f"{100.0 * np.mean(close):.0f} % of steps within 1.2 times the minimum, the median step at "
         f"{np.median(_all(parts, 'ratio')):.2f} times"
     )
-
-
-def _share(hits: Sequence[bool]) -> str:
-    low, high = wilson_percent(sum(hits), len(hits))
-    return f"{100.0 * sum(hits) / len(hits):.1f} % ({low:.1f} to {high:.1f} %)"
 
 
 def load(folder: Path) -> tuple[Stored, Stored]:

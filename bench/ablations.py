@@ -23,9 +23,9 @@ from typing import Any
 import numpy as np
 
 from app.blind.excite import PERIOD_S, TRAVEL_IN, commands, open_loop
-from app.blind.interval import wilson
 from app.blind.mark import mark
 from app.blind.strength import stratum, strength
+from app.interval import wilson
 from app.job import Job, perform
 from app.session import open_bench
 from bench.calibrate import labels

@@ -21,8 +21,8 @@ import numpy as np
 
 from app.blind.calibration import error
 from app.blind.excite import PERIOD_S, commands, open_loop
-from app.blind.interval import wilson
 from app.blind.mark import mark
+from app.interval import wilson
 from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.sealed import Cause, Label

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 
@@ -16,7 +15,6 @@ from control.scenarios import SCENARIOS, Scenario
 from control.trial import Opened, Trace, run_trial
 
 BenchFactory = Callable[[Scenario, int], Opened]
-GOAL_PERCENT = 0.3  # of travel, for the worst steady error
 NUMBERS = {"a1": "a1", "a2": "a2", "compliance": "compliance", "tau": "tau_s", "rate_limit": "rate_limit"}
 
 
@@ -105,16 +103,6 @@ def summary(results: Sequence[Result]) -> dict[str, dict[str, float]]:
             "air_psi": float(np.mean([s.air_psi for s in scores])),
         }
     return table
-
-
-def wilson_percent(hits: int, of: int) -> tuple[float, float]:
-    """The 95 % interval of a share [%] of which `hits` of `of` were seen.
-
-    Source: Wilson, "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 1927.
-    """
-    share, z = hits / of, 1.959964
-    middle, room = share + z * z / (2.0 * of), z * math.sqrt(share * (1.0 - share) / of + z * z / (4.0 * of * of))
-    return tuple(100.0 * (middle + sign * room) / (1.0 + z * z / of) for sign in (-1.0, 1.0))  # type: ignore[return-value]
 
 
 def by_scenario(results: Sequence[Result], key: str) -> dict[str, dict[str, tuple[float, float]]]:

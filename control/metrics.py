@@ -16,7 +16,8 @@ from control.trial import Trace
 FloatArray = npt.NDArray[np.float64]
 CLOSE = 1.2 + 1e-9  # what the goal allows in times of the floor
 BAND_PERCENT = 0.5  # settled: within this share of travel for the rest of the hold
-CYCLE_PERCENT = 0.3  # three standard deviations of one nominal reading (0.0006 in); and the goal for the steady error
+GOAL_PERCENT = 0.3  # of travel, for the worst steady error
+CYCLE_PERCENT = 0.3  # three standard deviations of one nominal reading (0.0006 in)
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,19 +115,30 @@ def score_hold(
     rounded up to a tick, because settling is seen at ticks.
     """
     error = 100.0 * (part_in - target_in) / TRAVEL_IN
-    last = error[-max(error.size // 4, 1) :]
-    outside = np.nonzero(np.abs(error) > BAND_PERCENT)[0]
-    settling_s = 0.0 if outside.size == 0 else float((outside[-1] + 1) * period_s)
+    last = last_quarter(error)
     least_s = fastest_s(valve, supply, start, target_in, 0.01 * BAND_PERCENT * TRAVEL_IN)
     beyond = error * (1.0 if target_in >= start[1] else -1.0)
     return HoldScore(
         error=float(last.mean()),
         ripple=float(np.abs(last).max()),
-        settling_s=None if outside.size and outside[-1] >= error.size - 1 else settling_s,
+        settling_s=settling_s(error, period_s),
         floor_s=math.ceil(least_s / period_s + 1.0 - 1e-9) * period_s if 0.0 < least_s < math.inf else 0.0,
         overshoot=max(float(beyond.max()), 0.0) if least_s > 0.0 else 0.0,
         cycle=hold_cycle(error),
     )
+
+
+def last_quarter(error_percent: FloatArray) -> FloatArray:
+    """The errors of a hold that count as steady."""
+    return error_percent[-max(error_percent.size // 4, 1) :]
+
+
+def settling_s(error_percent: FloatArray, period_s: float) -> float | None:
+    """When the error comes within `BAND_PERCENT` for the rest of the hold [s]; None where it does not."""
+    outside = np.flatnonzero(np.abs(error_percent) > BAND_PERCENT)
+    if outside.size == 0:
+        return 0.0
+    return None if outside[-1] == error_percent.size - 1 else float((outside[-1] + 1) * period_s)
 
 
 def hold_cycle(error_percent: FloatArray) -> float:

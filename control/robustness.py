@@ -6,6 +6,7 @@ through from the design outwards, and the first value at which any seed hunts is
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import MappingProxyType
@@ -15,13 +16,12 @@ import numpy.typing as npt
 
 from control.controller import make_controller
 from control.design import DesignModel
-from control.metrics import BAND_PERCENT, hold_cycle
+from control.metrics import GOAL_PERCENT, hold_cycle, last_quarter, settling_s
 from control.trial import Opened, run_trial
 
 FloatArray = npt.NDArray[np.float64]
 HOLD_S = 60.0
 TARGETS_PERCENT = (25.0, 75.0, 50.0)
-GOAL_PERCENT = 0.3
 
 
 @dataclass(frozen=True, slots=True)
@@ -128,9 +128,10 @@ def largest_cycle(subject: Subject, plant: Plant, seed: int, open_bench: BenchFa
 def nominal(subject: Subject, plant: Plant, seeds: Sequence[int], open_bench: BenchFactory) -> Nominal:
     """How the controller does on the valve that it was made for."""
     holds = [error for seed in seeds for error in hold_errors(subject, plant, seed, open_bench)]
-    means = [abs(float(error[-error.size // 4 :].mean())) for error in holds]
-    settled = [_settling_s(error, subject.tick_s) for error in holds]
-    return Nominal(max(means), max(hold_cycle(error) for error in holds), max(settled))
+    means = [abs(float(last_quarter(error).mean())) for error in holds]
+    settled = [settling_s(error, subject.tick_s) for error in holds]
+    longest_s = max(math.inf if each is None else each for each in settled)
+    return Nominal(max(means), max(hold_cycle(error) for error in holds), longest_s)
 
 
 def hold_errors(subject: Subject, plant: Plant, seed: int, open_bench: BenchFactory) -> FloatArray:
@@ -141,13 +142,6 @@ def hold_errors(subject: Subject, plant: Plant, seed: int, open_bench: BenchFact
     trace = run_trial(open_bench(plant, seed), controller, targets, subject.tick_s)
     error = 100.0 * (trace.truth_in - targets) / travel_in
     return np.asarray(error.reshape(len(TARGETS_PERCENT), -1))
-
-
-def _settling_s(error: FloatArray, tick_s: float) -> float:
-    outside = np.flatnonzero(np.abs(error) > BAND_PERCENT)
-    if outside.size == 0:
-        return 0.0
-    return float("inf") if outside[-1] == error.size - 1 else float(outside[-1] + 1) * tick_s
 
 
 def bears(margin: Margin, axis: Axis) -> bool:
@@ -161,8 +155,8 @@ def recommended(
 ) -> tuple[str | None, str]:
     """The controller to take, None where none is good enough, and why.
 
-    The rule: no limit cycle and at most 0.3 % of error as designed; bears the usual differences, where margins were
-    measured; of those, the one that settles first.
+    The rule: no limit cycle and at most `GOAL_PERCENT` of error as designed; bears the usual differences, where margins
+    were measured; of those, the one that settles first.
     """
     good = [name for name, n in as_designed.items() if n.cycle == 0.0 and n.error <= GOAL_PERCENT]
     rule = f"an error of at most {GOAL_PERCENT:g} % without a limit cycle"

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from app.blind.interval import bootstrap, wilson
+from app.interval import bootstrap, wilson
 
 Claim = tuple[float, bool]  # probability said, and whether the cause was true
 

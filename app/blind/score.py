@@ -10,8 +10,8 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from app.blind.calibration import calibration
-from app.blind.interval import bootstrap, median, rate
 from app.blind.strength import EDGES, STRATA
+from app.interval import bootstrap, median, rate
 
 Line = Mapping[str, Any]
 

@@ -135,11 +135,8 @@ def _print(results: Sequence[Result], detail: str, title: str) -> None:
 
 def _goal(results: Sequence[Result]) -> list[str]:
     """How many trials reach the goal, with 95 % intervals (Wilson's)."""
-    from control.compare import GOAL_PERCENT, wilson_percent
-
-    def share(hits: list[bool]) -> str:
-        low, high = wilson_percent(sum(hits), len(hits))
-        return f"{100.0 * sum(hits) / len(hits):.0f} % ({low:.0f} to {high:.0f} %)"
+    from app.interval import share
+    from control.metrics import GOAL_PERCENT
 
     lines = []
     for name in dict.fromkeys(r.job.controller for r in results):

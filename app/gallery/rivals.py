@@ -14,6 +14,7 @@ from control.compare import Result, by_scenario, jobs, summary
 from control.controller import controller_names
 from control.design import DesignModel
 from control.held_out import FIRST_SEED
+from control.metrics import GOAL_PERCENT
 from control.scenarios import SCENARIOS
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ def _dots(canvas: Canvas, results: Sequence[Result], key: str) -> None:
         axes.plot(np.median(values), place, "|", color=ORANGE, ms=14, mew=2)
     lines = ""
     if key in NAMES:
-        axes.axvline(0.3, color=GREY, lw=0.8, ls="--")
+        axes.axvline(GOAL_PERCENT, color=GREY, lw=0.8, ls="--")
         axes.axvline(1.3, color=GREY, lw=0.8)
         lines = " (lines: 0.3 and 1.3 %)"
     axes.set(xscale="log", xlabel=f"{NAMES.get(key, key)}, one dot per scenario{lines}")
@@ -90,7 +91,7 @@ def _seeds(canvas: Canvas, results: Sequence[Result]) -> None:
     for place, name in enumerate(SCENARIOS):
         values = [r.score.steady for r in results if r.job.scenario == name]
         axes.plot(values, np.full(len(values), place), "o", color=BLUE, ms=4, alpha=0.6)
-    axes.axvline(0.3, color=GREY, lw=0.8, ls="--")
+    axes.axvline(GOAL_PERCENT, color=GREY, lw=0.8, ls="--")
     axes.set(xlabel="worst steady error of a trial [% of travel] (line: the goal)", xlim=(0.0, None))
     axes.set_yticks(range(len(SCENARIOS)), list(SCENARIOS))
     axes.invert_yaxis()
@@ -115,8 +116,9 @@ def figure_brake() -> Entry:
             Number(f"{name}: steps within 1.2 floors", None, 100.0 * float(np.mean([s.close for s in mine])), "%", 0),
         ]
     total = [r.score for r in results]
+    near = _percent(s.steady <= GOAL_PERCENT for s in total)
     numbers += [
-        Number("trials with every steady error <= 0.3 %", None, _percent(s.steady <= 0.3 for s in total), "%", 0),
+        Number(f"trials with every steady error <= {GOAL_PERCENT} %", None, near, "%", 0),
         Number("trials without a limit cycle", None, _percent(s.cycle == 0.0 for s in total), "%", 0),
         Number("steps that settle within 1.2 floors", None, 100.0 * float(np.mean([s.close for s in total])), "%", 0),
     ]

@@ -7,11 +7,10 @@ import shutil
 from pathlib import Path
 
 import pytest
-from scipy.stats import binomtest
 
 from app.held_out import BEGIN, END, KEPT, block, load, write
 from app.rivals import run_all
-from control.compare import jobs, wilson_percent
+from control.compare import jobs
 from control.design import DesignModel
 
 DOCS = Path(__file__).parents[2] / "docs"
@@ -49,9 +48,3 @@ def test_writing_keeps_the_rest_of_the_page(tmp_path: Path) -> None:
     write(tmp_path, drawn, named)
     assert (tmp_path / "controllers.md").read_text() == (DOCS / "controllers.md").read_text()
     assert load(tmp_path) == (drawn, named)
-
-
-@pytest.mark.parametrize(("hits", "of"), [(10, 20), (0, 10), (667, 700)])
-def test_the_interval_is_wilsons(hits: int, of: int) -> None:
-    found = binomtest(hits, of).proportion_ci(0.95, method="wilson")
-    assert wilson_percent(hits, of) == pytest.approx((100.0 * found.low, 100.0 * found.high), abs=1e-4)

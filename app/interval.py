@@ -29,6 +29,13 @@ def rate(marks: Sequence[bool]) -> dict[str, Any]:
     return {"hits": hits, "of": of, "share": hits / of if of else None, "ci95": list(wilson(hits, of))}
 
 
+def share(marks: Sequence[bool], digits: int = 0) -> str:
+    """The share of hits with its interval, for people: `90 % (83 to 94 %)`."""
+    low, high = wilson(sum(marks), len(marks))
+    percent = 100.0 * sum(marks) / len(marks)
+    return f"{percent:.{digits}f} % ({100.0 * low:.{digits}f} to {100.0 * high:.{digits}f} %)"
+
+
 def bootstrap(items: Sequence[T], statistic: Callable[[Sequence[T]], float], seed: int = 0) -> tuple[float, float]:
     """95 % percentile interval of a statistic of independent items, by resampling them. Source: Efron (1979)."""
     chance = np.random.default_rng(seed)

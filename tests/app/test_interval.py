@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.blind.interval import bootstrap, median, rate, wilson
+from app.interval import bootstrap, median, rate, share, wilson
 
 
 def test_wilson_as_in_the_books() -> None:
@@ -12,6 +12,11 @@ def test_wilson_as_in_the_books() -> None:
     assert wilson(15, 148) == pytest.approx((0.0624, 0.1605), abs=1e-4)
     assert wilson(0, 20) == pytest.approx((0.0, 0.1611), abs=1e-4)
     assert wilson(29, 29) == pytest.approx((0.8830, 1.0), abs=1e-4)
+
+
+def test_a_share_reads_with_its_interval() -> None:
+    assert share([True] * 81 + [False] * 182, 1) == "30.8 % (25.5 to 36.6 %)"
+    assert share([True] * 20) == "100 % (84 to 100 %)"
 
 
 def test_nothing_tried_is_nothing_known() -> None:
