@@ -14,7 +14,7 @@ from control.analysis.loop import LinearLoop
 from control.analysis.measured import MeasuredCycle, measure_cycle
 from control.controller import Controller, make_controller
 from control.design import DesignModel
-from control.late_gauge import LateGauge
+from control.late_gauge import with_late_gauge
 from control.trial import Opened, Trace, follow_targets
 
 PI_GAINS = ((3.0, 1.0), (3.0, 3.0), (3.0, 6.0), (3.0, 8.0), (3.0, 10.0), (10.0, 5.0))
@@ -80,11 +80,11 @@ def measure(loop: LinearLoop, design: DesignModel, duration_s: float) -> Trace:
     opened = open_virtual(
         0,
         numbers=plant_numbers(wide),
-        effects={"dead_time": loop.dead_time_s} if loop.dead_time_s else {},
+        effects={"dead_time": loop.dead_time_s},
         noise=0.0,
         highest_psi=3.0 * LIFT_PSI,
     )
-    opened, tick_s = _late(opened, loop), loop.tick_s
+    opened, tick_s = with_late_gauge(opened, loop.late_s), loop.tick_s
     middle_in = 0.5 * wide.travel
     rest_psi = wide.a1 + middle_in / wide.compliance
     rest_s = middle_in / wide.rate_limit + 10.0 * (wide.tau_s + wide.ep_tau_s) + loop.dead_time_s + loop.late_s
@@ -101,10 +101,9 @@ def measure_wired(loop: LinearLoop, design: DesignModel, duration_s: float = DUR
     """The same over Modbus frames on a pseudo-terminal, under `WIRED`; what the LVDT reads."""
     from app.session import open_bench
 
-    effects = [f"dead_time={loop.dead_time_s}"] if loop.dead_time_s else []
     targets = np.full(round(duration_s / loop.tick_s), 0.5 * design.travel)
-    with open_bench(options=dict(plant_numbers(design)), effects=effects) as session:
-        opened = _late(Opened(session.bench, session.clock), loop)
+    with open_bench(options=dict(plant_numbers(design)), effects=[f"dead_time={loop.dead_time_s}"]) as session:
+        opened = with_late_gauge(Opened(session.bench, session.clock), loop.late_s)
         trace = follow_targets(opened, _controller(loop, design), targets, loop.tick_s)
     return measure_cycle(trace.time_s, trace.position_in, 0.01 * design.travel)
 
@@ -131,7 +130,3 @@ def first_gain(hunts: Callable[[float], bool], gains: Sequence[float]) -> float:
 def _controller(loop: LinearLoop, design: DesignModel, **limits: float) -> Controller[float]:
     settings = {"kp": loop.kp} | ({"ki": loop.ki} if loop.law == "pi" else {})
     return make_controller(loop.law, design, **settings, **limits)
-
-
-def _late(opened: Opened, loop: LinearLoop) -> Opened:
-    return replace(opened, bench=LateGauge(opened.bench, loop.late_s)) if loop.late_s else opened

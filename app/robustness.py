@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from control.robustness import AXES, Margin, Nominal, Plant, Subject, nominal, scan
+from control.robustness import AXES, Margin, Nominal, Plant, Subject, first_swing, nominal, scan
 
 if TYPE_CHECKING:
     from control.trial import Opened
@@ -43,11 +43,10 @@ def open_plant(plant: Plant, seed: int) -> Opened:
     """A fresh virtual valve with a plant's numbers, without a wire."""
     from app.hunting import plant_numbers
     from app.physics_bench import open_virtual
-    from control.late_gauge import LateGauge
+    from control.late_gauge import with_late_gauge
 
-    effects = {"dead_time": plant.dead_time_s} if plant.dead_time_s else {}
-    opened = open_virtual(seed, numbers=plant_numbers(plant.design), effects=effects)
-    return replace(opened, bench=LateGauge(opened.bench, plant.late_s)) if plant.late_s else opened
+    effects = {"dead_time": plant.dead_time_s}
+    return with_late_gauge(open_virtual(seed, numbers=plant_numbers(plant.design), effects=effects), plant.late_s)
 
 
 def run(job: Job) -> Nominal | Margin:
@@ -67,22 +66,21 @@ def lasting(job: Job) -> Margin:
     from app.hunting import measured
     from control.analysis.loop import LinearLoop
 
-    d, settings = job.subject.design, job.subject.settings
-    law: Any = job.subject.name.removesuffix("_antiwindup")
-    base = LinearLoop(law, settings["kp"], settings.get("ki", 0.0), d.ep_tau_s, d.tau_s, job.plant.dead_time_s)
-    base = replace(base, tick_s=job.subject.tick_s)
-    good = None
-    for value in LASTING[job.kind]:
+    subject, plant = job.subject, job.plant
+    law: Any = subject.name.removesuffix("_antiwindup")
+    kp, ki, d = subject.settings["kp"], subject.settings.get("ki", 0.0), subject.design
+    base = LinearLoop(law, kp, ki, d.ep_tau_s, d.tau_s, plant.dead_time_s, subject.tick_s, plant.late_s)
+
+    def swing(value: float) -> float:
         changed = {
-            "lasting_gain": replace(base, kp=value * base.kp, ki=value * base.ki),
+            "lasting_gain": replace(base, kp=value * kp, ki=value * ki),
             "lasting_dead_time": replace(base, dead_time_s=base.dead_time_s + value),
-            "lasting_late": replace(base, late_s=value),
+            "lasting_late": replace(base, late_s=base.late_s + value),
         }[job.kind]
         found = measured(changed, d, LASTING_S)
-        if found is not None:
-            return Margin(good, value, 200.0 * found.stem_in / d.travel)
-        good = value
-    return Margin(good, None)
+        return 200.0 * found.stem_in / d.travel if found else 0.0
+
+    return first_swing(LASTING[job.kind], swing)
 
 
 def run_all(todo: Sequence[Job], processes: int) -> Iterator[Nominal | Margin]:

@@ -7,8 +7,14 @@ from dataclasses import replace
 from types import TracebackType
 from typing import Self
 
+from control.trial import Opened
 from hal.bench import Bench, BenchInfo
 from hal.sample import Sample
+
+
+def with_late_gauge(opened: Opened, late_s: float) -> Opened:
+    """An open bench with its position `late_s` late [s]; as it is for 0."""
+    return replace(opened, bench=LateGauge(opened.bench, late_s)) if late_s else opened
 
 
 class LateGauge:

@@ -110,12 +110,20 @@ AXES: Mapping[str, Axis] = MappingProxyType(
 
 def scan(subject: Subject, axis: Axis, plant: Plant, seeds: Sequence[int], open_bench: BenchFactory) -> Margin:
     """Goes along an axis until a seed hunts."""
-    good = None
-    for value in axis.values:
+
+    def swing(value: float) -> float:
         changed = axis.change(plant, value)
-        swing = max(largest_cycle(subject, changed, seed, open_bench) for seed in seeds)
-        if swing > 0.0:
-            return Margin(good, value, swing)
+        return max(largest_cycle(subject, changed, seed, open_bench) for seed in seeds)
+
+    return first_swing(axis.values, swing)
+
+
+def first_swing(values: Sequence[float], swing: Callable[[float], float]) -> Margin:
+    """Goes along `values` to the first at which `swing` [percent of travel] is more than nothing."""
+    good = None
+    for value in values:
+        if (size := swing(value)) > 0.0:
+            return Margin(good, value, size)
         good = value
     return Margin(good, None)
 

@@ -56,6 +56,16 @@ def test_the_describing_function_is_the_more_optimistic_one() -> None:
     assert 1.6 < found.bad <= margins(loop, DESIGN).gain
 
 
+@pytest.mark.parametrize("plant", [Plant(DESIGN, dead_time_s=0.3), Plant(DESIGN, late_s=0.3)])
+def test_delays_that_the_valve_has_already_are_in_its_lasting_margins(plant: Plant) -> None:
+    """The first swing that lasts comes at the same 0.8 s in all, and is the same."""
+    subject = Subject("pi", {"kp": 3.0, "ki": 4.0}, DESIGN)
+    kind = "lasting_late" if plant.late_s else "lasting_dead_time"
+    prompt, slow = (lasting(Job(subject, kind, each, (0,))) for each in (Plant(DESIGN), plant))
+    assert prompt.bad == 0.8 and slow.bad == 0.5
+    assert slow.swing == pytest.approx(prompt.swing)
+
+
 def test_the_plant_of_a_margin_is_the_changed_one() -> None:
     """Where the scan says that it hunts, a valve of that compliance hunts; and the scan says it again."""
     subject = Subject("p_incremental", {"kp": 1.8}, DESIGN)
