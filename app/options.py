@@ -65,6 +65,11 @@ def bench_options(command: F) -> F:
     return command
 
 
+def listed(text: str) -> tuple[str, ...]:
+    """The words of an option that takes several with commas between."""
+    return tuple(word.strip() for word in text.split(",") if word.strip())
+
+
 def plant_options(effects: Sequence[str] = (), plant: Sequence[str] = ()) -> dict[str, object]:
     """The words of `--effect` and `--plant` as options of the virtual valve. Raises: `BadInput`."""
     from hal.errors import BadInput

@@ -2,10 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from typing import TypeVar
 
 Progress = Callable[[str, float], None]
+T = TypeVar("T")
+
+
+def counted(results: Iterable[T], total: int, what: str) -> list[T]:
+    """All `total` results, with a bar while they come."""
+    from rich.console import Console
+    from rich.progress import track
+
+    console = Console(stderr=True)
+    return list(track(results, what, total, console=console, disable=not console.is_terminal, transient=True))
 
 
 @contextmanager

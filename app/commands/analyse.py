@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
     from app.gains import Sweep
     from app.hunting import Case
-    from control.analysis.loop import LinearLoop
     from control.design import DesignModel
 
 LAWS = ("p", "p_incremental", "pi")
@@ -45,7 +44,8 @@ def command(
     Without --law: the thesis's gains and others, for P in both readings and for PI.
     """
     from app.gains import parse_sweep, write_csv
-    from app.hunting import gains
+    from app.hunting import gains, study
+    from app.progress import counted
     from control.analysis.loop import LinearLoop
     from control.design import DesignModel, check_for_control, load_design
     from hal.errors import BadInput
@@ -60,7 +60,7 @@ def command(
     swept = parse_sweep(sweep) if sweep else None
     base = replace(base, law=law or "p")  # type: ignore[arg-type]
     loops = swept.loops(base) if swept else [base] if law else gains(base)
-    cases = _study(loops, model, modbus)
+    cases = counted(study(loops, model, wired=modbus), len(loops), "loops")
     if csv_file is not None:
         write_csv(cases, model.travel, csv_file)
     if plot is not None:
@@ -69,17 +69,6 @@ def command(
         click.echo(json.dumps([asdict(case) for case in cases], indent=1))
     else:
         _print(cases, model.travel, modbus)
-
-
-def _study(loops: Sequence[LinearLoop], model: DesignModel, modbus: bool) -> list[Case]:
-    from rich.console import Console
-    from rich.progress import track
-
-    from app.hunting import study
-
-    console = Console(stderr=True)
-    each = study(loops, model, wired=modbus)
-    return list(track(each, "loops", len(loops), console=console, disable=not console.is_terminal, transient=True))
 
 
 def _draw(cases: Sequence[Case], model: DesignModel, swept: Sweep | None, path: Path) -> None:

@@ -11,7 +11,7 @@ import click
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from control.compare import Job, Result
+    from control.compare import Result
 
 COLUMNS = (
     ("steady_worst", "worst steady error", "%", 2),
@@ -63,6 +63,9 @@ def command(
     """
     from dataclasses import fields
 
+    from app.options import listed
+    from app.progress import counted
+    from app.rivals import run_all
     from control.compare import as_json as everything
     from control.compare import jobs
     from control.controller import controller_class, controller_names
@@ -72,15 +75,16 @@ def command(
     from control.scenarios import chosen_scenarios
     from hal.errors import BadInput
 
-    names = _words(controllers) or controller_names()
+    names = listed(controllers) or controller_names()
     for name in names:
         controller_class(name)
     if detail not in {f.name for f in fields(Score)}:
         raise BadInput(f"--detail {detail!r} is not a score; choose from {', '.join(f.name for f in fields(Score))}")
-    chosen = [s.name for s in chosen_scenarios(_words(scenarios))]
+    chosen = [s.name for s in chosen_scenarios(listed(scenarios))]
     first = first_seed if first_seed is not None else FIRST_SEED if held_out else 0
     known = load_design(design) if design else DesignModel()
-    results = _play(jobs(names, chosen, range(first, first + seeds), period, known, held_out), processes)
+    todo = jobs(names, chosen, range(first, first + seeds), period, known, held_out)
+    results = counted(run_all(todo, processes), len(todo), f"{len(todo)} trials")
     if plot is not None:
         from app.gallery.rivals import draw_comparison
 
@@ -90,26 +94,6 @@ def command(
     else:
         drawn = "sizes and targets drawn, held out" if held_out else "sizes and targets as the scenarios name them"
         _print(results, detail, f"over all scenarios, seeds {first} to {first + seeds - 1}, {drawn}")
-
-
-def _words(text: str) -> tuple[str, ...]:
-    return tuple(word.strip() for word in text.split(",") if word.strip())
-
-
-def _play(todo: Sequence[Job], processes: int) -> list[Result]:
-    from rich.console import Console
-    from rich.progress import Progress
-
-    from app.rivals import run_all
-
-    console = Console(stderr=True)
-    with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task(f"{len(todo)} trials", total=len(todo))
-        results = []
-        for result in run_all(todo, processes):
-            results.append(result)
-            bar.advance(task)
-    return results
 
 
 def _print(results: Sequence[Result], detail: str, title: str) -> None:

@@ -45,6 +45,7 @@ def command(
     margins are the describing function's, the others are measured on a virtual valve with the model's numbers; those
     of --margins by the criterion of `compare` for limit cycles.
     """
+    from app.options import listed
     from app.robustness import jobs
     from control.controller import controller_class
     from control.design import DesignModel, load_design
@@ -52,7 +53,7 @@ def command(
     from control.tune import tune
 
     design = load_design(model) if model else DesignModel()
-    names = [word.strip() for word in controllers.split(",") if word.strip()]
+    names = listed(controllers)
     for name in names:
         controller_class(name)
     tuned = [t for t in tune(design, period, dead_time) if not names or t.controller in names]
@@ -66,17 +67,12 @@ def command(
 
 
 def _measure(todo: Sequence[Job], processes: int) -> Answers:
-    from rich.console import Console
-    from rich.progress import Progress
-
+    from app.progress import counted
     from app.robustness import run_all
 
-    console, answers = Console(stderr=True), Answers()
-    with Progress(console=console, disable=not console.is_terminal, transient=True) as bar:
-        task = bar.add_task("measuring", total=len(todo))
-        for job, answer in zip(todo, run_all(todo, processes), strict=True):
-            answers.setdefault(job.subject.name, {})[job.kind] = answer
-            bar.update(task, advance=1, description=f"{job.subject.name}, {job.kind}")
+    answers = Answers()
+    for job, answer in zip(todo, counted(run_all(todo, processes), len(todo), "measuring"), strict=True):
+        answers.setdefault(job.subject.name, {})[job.kind] = answer
     return answers
 
 
