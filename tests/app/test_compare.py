@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -12,9 +13,12 @@ from click.testing import CliRunner
 
 import app.hunting
 from app.commands.analyse import command as analyse
+from app.commands.compare import _goal
 from app.commands.compare import command as compare
 from app.physics_bench import open_virtual
+from app.rivals import run_all
 from app.session import open_bench
+from control.compare import Result, jobs
 from control.controller import make_controller
 from control.design import DesignModel, save_design
 from control.held_out import FIRST_SEED
@@ -71,6 +75,21 @@ def test_compare_prints_a_table_and_a_picture(tmp_path: Path) -> None:
 def test_compare_refuses_what_it_does_not_know(arguments: list[str], said: str) -> None:
     with pytest.raises(BadInput, match=said):
         CliRunner().invoke(compare, arguments, catch_exceptions=False)
+
+
+def test_the_goal_is_counted_per_controller_and_trial() -> None:
+    """A steady error of 0.3 % is within the goal, 0.31 % is not; any limit cycle counts."""
+    (one,) = run_all(jobs(["p"], ["ladder"], [0], 0.1, DESIGN), 1)
+    sizes = {"pi": ((0.3, 0.0), (0.31, 0.0), (0.1, 0.4), (0.1, 0.0)), "p": ((9.0, 0.0),)}
+    results = [
+        Result(replace(one.job, controller=name), replace(one.score, steady=steady, cycle=cycle))
+        for name, trials in sizes.items()
+        for steady, cycle in trials
+    ]
+    assert _goal(results) == [
+        "pi: 75 % (30 to 95 %) of 4 trials within 0.3 %, 75 % (30 to 95 %) without a limit cycle",
+        "p: 0 % (0 to 79 %) of 1 trials within 0.3 %, 100 % (21 to 100 %) without a limit cycle",
+    ]
 
 
 def test_analyse_one_loop(tmp_path: Path) -> None:

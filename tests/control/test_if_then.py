@@ -69,6 +69,13 @@ def test_the_first_move_after_a_hand_over_ends_on_the_curve(name: str) -> None:
     assert command == pytest.approx(DESIGN.a1 + 0.25 / DESIGN.compliance)
 
 
+def test_only_the_target_of_the_hand_over_forgives_noise() -> None:
+    resting = Decision(0.0, 9.0, rests_in=0.2)
+    assert resting.left_alone(0.2, -0.0017, 0.0) and not resting.left_alone(0.2, 0.0019, 0.0)
+    assert not resting.left_alone(0.21, 0.0001, 0.0) and not Decision(0.0, 9.0).left_alone(0.2, 0.0001, 0.0)
+    assert resting.left_alone(0.21, 0.003, 0.003)
+
+
 def test_it_decides_at_its_own_pace() -> None:
     decision = Decision(0.3, 9.0)
     ticks = 0

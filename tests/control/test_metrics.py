@@ -8,8 +8,9 @@ import pytest
 from app.rivals import open_scenario
 from control.compare import Job, run_job, summary
 from control.design import DesignModel
-from control.metrics import limit_cycle, score_hold
+from control.metrics import limit_cycle, score, score_hold
 from control.scenarios import LADDER, SCENARIOS, Scenario, Segment, chosen_scenarios
+from control.trial import Trace
 from hal.errors import BadInput
 
 VALVE = DesignModel()
@@ -57,3 +58,13 @@ def test_a_summary_takes_the_worst_and_the_median() -> None:
     row = summary(results)["if_then_line"]
     assert row["steady_worst"] == max(r.score.steady for r in results)
     assert row["steady_spread"] == pytest.approx(abs(results[0].score.steady - results[1].score.steady))
+
+
+def test_later_leaves_the_first_hold_out() -> None:
+    """From a vented valve an If-Then rule is off in the first hold and on the target in the second."""
+    held = Scenario("held", "two holds", (Segment(0.3, 0.3, 1.5), Segment(0.3, 0.3, 60.0)))
+    targets = held.targets(0.1)
+    stem = np.where(np.arange(targets.size) < 15, 0.25, 0.3)
+    found = score(Trace(0.1 * np.arange(targets.size), targets, stem, stem, stem, stem), held, DesignModel())
+    assert found.steady == pytest.approx(100.0 * 0.05 / 0.5625)
+    assert found.later == pytest.approx(0.0, abs=1e-9)

@@ -105,6 +105,15 @@ def test_a_loop_that_is_unstable_with_the_play_wide_open_grows() -> None:
     assert not grows(LinearLoop("pi", 3.0, 3.0), DESIGN)
 
 
+@pytest.mark.parametrize(("share", "answer"), [(0.97, False), (1.03, True)])
+def test_growth_begins_where_the_loop_with_the_plays_full_slope_passes_minus_one(share: float, answer: bool) -> None:
+    loop = LinearLoop("pi", 3.0, 8.0, dead_time_s=1.0)
+    line = loop(loop.frequencies(20000)) * DESIGN.compliance
+    passes = (np.diff(np.sign(line.imag)) != 0) & (line.real[:-1] < 0.0)
+    factor = share / float(np.abs(line[:-1][passes]).max())
+    assert grows(replace(loop, kp=factor * loop.kp, ki=factor * loop.ki), DESIGN) == answer
+
+
 def test_the_rate_limit_is_seen_by_the_balance() -> None:
     fast = LinearLoop("p_incremental", 3.0)
     cycle = predict(fast, DESIGN)[-1]
