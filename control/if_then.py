@@ -38,6 +38,11 @@ class Decision:
         noise_in = SEEN_IN if self.rests_in == target_in else 0.0
         return abs(error_in) <= max(tolerance_in, noise_in)
 
+    def jump_psi(self, error_in: float, seen: Seen, threshold_psi: float, design: DesignModel) -> float:
+        """The deadband where it has to be crossed, with its sign; the first time only as far as the curve [psi]."""
+        jump_psi = crossing_psi(error_in, seen.pressure_psi, threshold_psi, design.deadband)
+        return jump_psi if self.placed else to_the_curve_psi(jump_psi, seen, design)
+
 
 def crossing_psi(error_in: float, pressure_psi: float, threshold_psi: float, deadband_psi: float) -> float:
     """The deadband, with the error's sign, where the pressure is on the wrong side of the threshold; else 0 [psi]."""
@@ -90,9 +95,6 @@ class IfThen(Law[Decision]):
         error_in = target_in - seen.position_in
         if state.left_alone(target_in, error_in, self.tolerance_in):
             return replace(state, wait_s=self.update_s - dt_s), state.command_psi
-        threshold_psi = self.threshold_at_psi(seen.position_in)
-        jump_psi = crossing_psi(error_in, seen.pressure_psi, threshold_psi, self.design.deadband)
-        if not state.placed:
-            jump_psi = to_the_curve_psi(jump_psi, seen, self.design)
+        jump_psi = state.jump_psi(error_in, seen, self.threshold_at_psi(seen.position_in), self.design)
         command_psi = self.clamp(seen.pressure_psi + jump_psi + (self.g or 1.0 / self.design.compliance) * error_in)
         return Decision(self.update_s - dt_s, command_psi, None, state.placed or jump_psi != 0.0), command_psi

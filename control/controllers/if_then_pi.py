@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from control.controller import Law, Seen
-from control.if_then import Decision, crossing_psi, threshold_line_psi, to_the_curve_psi
+from control.if_then import Decision, threshold_line_psi
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +44,7 @@ class IfThenPi(Law[IfThenPiState]):
             return replace(state, decision=replace(last, wait_s=self.update_s - dt_s)), last.command_psi
         d = self.design
         line_psi = threshold_line_psi(seen.position_in, d.compliance, d.a1, d.a2)
-        jump_psi = crossing_psi(error_in, seen.pressure_psi, line_psi, d.deadband)
-        if not last.placed:
-            jump_psi = to_the_curve_psi(jump_psi, seen, d)
+        jump_psi = last.jump_psi(error_in, seen, line_psi, d)
         integral_psi = state.integral_psi
         if not jump_psi and abs(error_in) <= self.window_in and self.min_psi < last.command_psi < self.max_psi:
             room_psi = self.integral_max_psi
