@@ -10,7 +10,7 @@ from logs.recording import DataNote
 from twin.case import Case
 from twin.catalog import effects
 from twin.choose.decide import DecisionRules
-from twin.closure import FLOOR_DOUBT, MOVING_DOUBT, gap, rms
+from twin.closure import floor_doubt, gap, rms
 from twin.detectable import detection_limits, unseen_in_windows
 from twin.diagnosis import Cause, Diagnosis, Where
 from twin.gap import GapParts
@@ -39,7 +39,7 @@ def assembled(
     """Everything but what comes next: `final` is the updated model, `loud` what should repeat and does not."""
     floor = _floor(case, parts, judgement, loud)
     memory = case.noise.position.correlation_samples
-    doubt = FLOOR_DOUBT if case.noise.position.source in ("repeats", "still") else MOVING_DOUBT
+    doubt = floor_doubt(case.noise.position)
     channels = [d.findings.channel for d in result.decisions]
     limits = detection_limits(channels, case.base, case.scales, tuple(effects().values()), rules)
     limits = unseen_in_windows(limits, channels[-1], case)

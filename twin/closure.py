@@ -13,12 +13,13 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.diagnosis import Gap, Interval, Share
+from twin.noise.model import SignalNoise
 from twin.where.bootstrap import block_rows, block_sums, interval, resample
+from twin.where.telescope import FLOOR_DOUBT
 
 NOTHING_TO_CLOSE = 1.05  # before / floor: below it the closed share is a quotient of noises
-#: Standard error of a floor over the floor: where it was measured at rest or between repeats (as
-#: `twin/where/telescope.py` has it), and where motion is in it.
-FLOOR_DOUBT, MOVING_DOUBT = 0.05, 0.2
+#: Standard error of a floor over the floor where it was measured with motion in it.
+MOVING_DOUBT = 0.2
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +44,11 @@ def rms(residual: FloatArray) -> float:
     """Root mean square of the known rows; NaN if there are none."""
     known = residual[np.isfinite(residual)]
     return float(np.sqrt(np.mean(np.square(known)))) if known.size else float("nan")
+
+
+def floor_doubt(noise: SignalNoise) -> float:
+    """Standard error of a floor that was measured as `noise` was, over the floor."""
+    return FLOOR_DOUBT if noise.source in ("repeats", "still") else MOVING_DOUBT
 
 
 def closure(

@@ -124,7 +124,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
         case, result, judgement, final, where, parts, itself.loud, settings.rules, settings.seed, known.notes
     )
     floor = diagnosis.gap.noise_floor * case.travel / 100.0
-    apart = gap_by_condition(case, result, retuned, floor, settings.seed) if judgement.causes else None
+    apart = gap_by_condition(result, retuned, floor, settings.seed) if judgement.causes else None
     proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
     loop = closed_loop(known.recordings, final)
     plants = (case.base, retuned.plant, final)

@@ -67,8 +67,11 @@ class RepeatPair:
         return other, part
 
 
-def find_repeats(recordings: Sequence[Recording]) -> list[RepeatPair]:
-    """Pairs of stretches with the same command: each recording with the next like it, and with itself one period on."""
+def find_repeats(recordings: Sequence[Recording], most: int | None = _MAX_PAIRS) -> list[RepeatPair]:
+    """Pairs of stretches with the same command: each recording with the next like it, and with itself one period on.
+
+    The first `most` of them, which is plenty to measure a noise by; None for all.
+    """
     pairs: list[RepeatPair] = []
     representatives: list[Recording] = []
     for recording in recordings:
@@ -85,7 +88,7 @@ def find_repeats(recordings: Sequence[Recording]) -> list[RepeatPair]:
             own = _periodic(recording)
             if own is not None and not own.copied:
                 pairs.append(own)
-    return pairs[:_MAX_PAIRS]
+    return pairs[:most]
 
 
 def _aligned(first: Recording, second: Recording) -> RepeatPair | None:

@@ -19,9 +19,10 @@ from logs.recording import FloatArray
 from twin.diagnosis import Share
 from twin.where.bootstrap import block_rows, block_sums, interval, resample
 
-# a total below this is the floor's own scatter, or its uncertainty of a few percent: shares of nothing are not given
+#: Standard error of a floor over the floor, where it was measured at rest or between repeats.
+FLOOR_DOUBT = 0.05
+# a total below so much of its own scatter, or below the floor's doubt, is nothing: shares of nothing are not given
 _STANDARD_ERRORS = 4.0
-_FLOOR_DOUBT = 0.05
 
 
 def stage_shares(
@@ -54,7 +55,7 @@ def stage_shares(
 def least_excess(rows: int, noise_sigma: float, correlation_samples: float) -> float:
     """The sum of squares above the floor that `rows` rows need before there is anything to share out."""
     scatter = _STANDARD_ERRORS * float(np.sqrt(2.0 * correlation_samples / max(rows, 1)))
-    return rows * noise_sigma**2 * max(scatter, _FLOOR_DOUBT)
+    return rows * noise_sigma**2 * max(scatter, FLOOR_DOUBT)
 
 
 def two_stage_terms(reading: FloatArray, full: FloatArray, from_pressure: FloatArray) -> dict[str, FloatArray]:
