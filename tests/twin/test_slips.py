@@ -4,11 +4,18 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
+from twin.choose.candidates import number_causes
+from twin.effect import Scales
+from twin.fit.channel import position_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import make_space
 from twin.plant import Inserted, Plant
 
 OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14)
@@ -38,3 +45,13 @@ def test_an_effect_is_not_put_down_to_the_numbers() -> None:
 def test_a_design_without_a_gap_is_not_taken_apart() -> None:
     result, _ = judged(a_record(Plant(DesignModel())), DesignModel())
     assert all(len(f.names) < 3 for d in result.decisions for f in d.findings.fits)
+
+
+def test_numbers_start_far_off_too_unless_they_are_known_from_another_fit() -> None:
+    channel = position_channel([trial_of(Plant(DESIGN), staircase())[0]], SIGMA)
+    space = make_space(Plant(DESIGN), number_causes(channel), channel.numbers, Scales())
+    anywhere = starts_of(space)
+    assert len(anywhere) == len({tuple(z) for z in anywhere}) == 3**4  # compliance starts at its nominal only
+    known = fit(channel, space, [np.full(len(space.numbers), 0.01)], rounds=1)
+    [start] = starts_of(space, [known])
+    assert np.array_equal(start, known.z)

@@ -107,7 +107,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
     Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
     the design numbers start as in the first of them. A form may read its starts from the `record`.
     """
-    heads = _number_starts(space)
+    heads = _number_starts(space, known[0].space.numbers if known else ())
     for cause in space.causes:
         if cause.form is None:
             continue
@@ -120,17 +120,18 @@ def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None 
     return heads
 
 
-def _number_starts(space: Space) -> list[FloatArray]:
+def _number_starts(space: Space, given: Sequence[str]) -> list[FloatArray]:
     """Design numbers at their nominals; where nothing but they stand accused, they also start far off.
 
-    A design that is wrong enough never moves, and then no small change of its numbers makes a difference.
+    A design that is wrong enough never moves, and then no small change of its numbers makes a difference. Those that
+    are `given` a start elsewhere need none here: each combination is looked at once.
     """
     heads = [np.zeros(len(space.numbers))]
     if any(cause.form is not None for cause in space.causes):
         return heads
     accused = {c.name.removeprefix("parameter:") for c in space.causes} or set(space.numbers)
     for name, far in _FAR.items():
-        if name in accused:
+        if name in accused and name not in given:
             at = space.numbers.index(name)
             heads = [_moved(head, at, z) for head in heads for z in (0.0, -far, far)]
     return heads
