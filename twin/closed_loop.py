@@ -7,9 +7,10 @@ model makes of the same commands, and says so.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import numpy as np
@@ -25,10 +26,9 @@ from twin.live.twin import LiveTwin
 from twin.plant import Plant
 from twin.simulate import simulate_recording
 
-#: A target counts as a hold when it stands still for so long [s].
+#: A target counts as a hold when it stands still for so long [s], and has so many readings.
 _SHORTEST_HOLD_S = 5.0
-
-
+_FEWEST_READINGS = 8
 #: Rows of all records together of which the loop is closed again; a tick of the model takes some 50 us.
 _MOST_ROWS = 100_000
 
@@ -54,7 +54,8 @@ def closed_loop(recordings: Sequence[Recording], plant: Plant) -> dict[str, obje
     looped = [r for r in recordings if r.target is not None and holds(r)]
     if not looped:
         return {}
-    used = [r for k, r in enumerate(looped) if k == 0 or sum(one.n for one in looped[: k + 1]) <= _MOST_ROWS]
+    rows = accumulate(r.n for r in looped)
+    used = [r for k, (r, so_far) in enumerate(zip(looped, rows, strict=True)) if k == 0 or so_far <= _MOST_ROWS]
     how: dict[str, None] = {}
     recorded, predicted = [], []
     for recording in used:
@@ -100,12 +101,12 @@ def holds(recording: Recording) -> list[slice]:
 
 
 def judge_loop(recording: Recording, position: FloatArray, travel: float) -> Loop:
-    """Worst steady error (mean over the last quarter), median settling time, worst limit cycle over all holds."""
+    """Worst steady error (mean over the last quarter) and worst limit cycle of all holds, and when each one settled."""
     assert recording.target is not None
     results, cycles = [], []
     for part in holds(recording):
         seen = np.isfinite(position[part])
-        if np.count_nonzero(seen) < 8:
+        if np.count_nonzero(seen) < _FEWEST_READINGS:
             continue
         time_s, x = recording.time_s[part][seen], position[part][seen]
         target = float(recording.target[part][0])
@@ -127,13 +128,16 @@ def _smooth(values: FloatArray, rows: int = 5) -> FloatArray:
 
 
 def _replayed(recording: Recording, plant: Plant, controller: Controller[Any]) -> FloatArray:
-    """Position at the rows when the controller drives the model; what it decides on a row is in force in the next."""
+    """Position at the rows when the controller drives the model; what it decides on a row is in force in the next.
+
+    Where no target is known nobody closes the loop: the recorded command goes on, and the controller takes over anew.
+    """
     assert recording.target is not None
     first = float(recording.position[np.flatnonzero(np.isfinite(recording.position))[0]])
     pressure = None if recording.pressure is None else float(recording.pressure[0])
-    time_s, targets = recording.time_s.tolist(), recording.target.tolist()
+    time_s, targets, commands = (a.tolist() for a in (recording.time_s, recording.target, recording.command))
     # a tick writes what was decided a tick ago and then reads; what it wrote holds until the next tick
-    in_force = sent = float(recording.command[0])
+    in_force = sent = commands[0]
     twin = LiveTwin.at_rest(plant, time_s[0], in_force, first, pressure, recording.duration_s)
     out: FloatArray = np.empty(recording.n)
     state: Any = None
@@ -141,9 +145,12 @@ def _replayed(recording: Recording, plant: Plant, controller: Controller[Any]) -
         p, out[k] = twin.step(now_s, in_force)
         read = None if pressure is None else Reading(p, now_s, 0.0)
         sample = Sample(now_s, sent, Reading(float(out[k]), now_s, 0.0), read)
-        state = controller.initial(sample, targets[k]) if state is None else state
         in_force = sent
-        state, sent = controller.step(state, sample, targets[k], recording.period_s)
+        if math.isfinite(targets[k]):
+            state = controller.initial(sample, targets[k]) if state is None else state
+            state, sent = controller.step(state, sample, targets[k], recording.period_s)
+        else:
+            state, sent = None, commands[min(k + 2, recording.n - 1)]
     return out
 
 

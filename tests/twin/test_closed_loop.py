@@ -90,6 +90,17 @@ def test_a_strangers_record_is_judged_on_its_own_command() -> None:
     assert errors["predicted"] == pytest.approx(errors["recorded"], abs=0.02)
 
 
+@pytest.mark.parametrize("unknown", [slice(0, 600), slice(600, 1200), slice(300, 301)])
+def test_where_no_target_is_known_the_recorded_command_goes_on(unknown: slice) -> None:
+    record = recorded(Plant(DesignModel()))
+    assert record.target is not None
+    target = record.target.copy()
+    target[unknown] = np.nan
+    said = closed_loop([replace(record, target=target)], Plant(DesignModel()))
+    errors = table(said, "steady_error_percent_of_travel")
+    assert errors["predicted"] == pytest.approx(errors["recorded"], abs=1.0)
+
+
 def test_holds_are_stretches_with_one_target() -> None:
     record = recorded(Plant(DesignModel()), hold_s=10.0)
     assert [(part.start, part.stop) for part in holds(record)] == [(0, 100), (100, 200), (200, 300)]
