@@ -1,15 +1,15 @@
 """The answer of a diagnosis: where, which, how far, how sure, what next; and its JSON.
 
 Everything here is data. The keys that scripts rely on are those of the interfaces page; keys beyond them
-(`statement`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`, `interrupted`, a cause's
-`form`, a candidate's `rejected`) are free.
+(`statement`, `gap_by_condition`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`,
+`interrupted`, a cause's `form`, a candidate's `rejected`) are free.
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Literal
 
@@ -152,13 +152,13 @@ class Diagnosis:
             "statement": self.statement,
             "causes": [_cause(cause) for cause in sorted(self.causes, key=lambda c: -c.probability)],
             "confusable": self.confusable,
-            "ranking": [_ranked(line) for line in self.ranking],
+            "ranking": self.ranking,
             "where": _where(self.where),
             "gap": _gap(self.gap),
             "gap_by_condition": self.gap_by_condition and _gap(self.gap_by_condition),
-            "next_experiment": _next(self.next_experiment),
-            "data_quality": [_note(note) for note in self.data_quality],
-            "effects_tested": {test.name: _test(test) for test in self.effects_tested},
+            "next_experiment": self.next_experiment,
+            "data_quality": self.data_quality,
+            "effects_tested": {test.name: _unnamed(test) for test in self.effects_tested},
             "residual_signature": self.residual_signature,
             "structure": self.structure,
             "noise": self.noise,
@@ -184,19 +184,7 @@ def _cause(cause: Cause) -> dict[str, object]:
         "form": cause.form or None,
         "probability": cause.probability,
         "heldout_gap_without": cause.heldout_gap_without,
-        "parameters": {
-            name: {"value": estimate.value, "ci95": estimate.ci95, "unit": estimate.unit}
-            for name, estimate in cause.parameters.items()
-        },
-    }
-
-
-def _ranked(line: Ranked) -> dict[str, object]:
-    return {
-        "name": line.name,
-        "probability": line.probability,
-        "heldout_gap": line.heldout_gap,
-        "rejected": line.rejected,
+        "parameters": cause.parameters,
     }
 
 
@@ -231,20 +219,6 @@ def _gap(gap: Gap) -> dict[str, object]:
     }
 
 
-def _next(experiment: NextExperiment | None) -> dict[str, object] | None:
-    return None if experiment is None else {"why": experiment.why, "file": experiment.file}
-
-
-def _note(note: DataNote) -> dict[str, object]:
-    return {"what": note.what, "handled": note.handled, "rows": note.rows, "first_row": note.first_row}
-
-
-def _test(test: EffectTest) -> dict[str, object]:
-    return {
-        "testable": test.testable,
-        "reason": test.reason,
-        "parameter": test.parameter,
-        "detection_limit": test.detection_limit,
-        "unit": test.unit,
-        "form": test.form,
-    }
+def _unnamed(test: EffectTest) -> dict[str, object]:
+    """Its fields without the name, which is its key."""
+    return {one.name: getattr(test, one.name) for one in fields(test) if one.name != "name"}

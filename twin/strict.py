@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
 
 _DIGITS = 6  # significant digits in the file: more would pretend, and would change with the machine
 
 
 def json_ready(value: object) -> object:
-    """`value` as JSON types: tuples and arrays as lists, six significant digits, non-finite numbers as None.
+    """`value` as JSON types: tuples and arrays as lists, dataclasses as objects, six significant digits.
+
+    Non-finite numbers are None.
 
     Raises: TypeError for an object that has no JSON form.
     """
@@ -21,6 +24,8 @@ def json_ready(value: object) -> object:
         return {str(key): json_ready(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
         return [json_ready(item) for item in value]
+    if is_dataclass(value) and not isinstance(value, type):
+        return {one.name: json_ready(getattr(value, one.name)) for one in fields(value)}
     as_list = getattr(value, "tolist", None)  # numpy arrays and scalars
     if as_list is not None:
         return json_ready(as_list())

@@ -58,6 +58,11 @@ def test_promised_keys_and_values() -> None:
     assert isinstance(causes, list)
     assert [cause["name"] for cause in causes] == ["stiction", "creep"]  # by probability
     assert causes[0]["parameters"]["breakaway"] == {"value": 1.9, "ci95": [1.8, 2.0], "unit": "psi"}
+    note = {"what": "NaN in position_in", "handled": "left out", "rows": 3, "first_row": 17}
+    assert document["data_quality"] == [note]
+    tested = document["effects_tested"]
+    assert isinstance(tested, dict)
+    assert set(tested["dead_time"]) == {"testable", "reason", "parameter", "detection_limit", "unit", "form"}
     where = document["where"]
     assert isinstance(where, dict)
     assert where["stage"]["ep"] + where["stage"]["actuator_or_sensor"] == pytest.approx(1.0)
@@ -89,5 +94,6 @@ def test_file_is_strict_json(tmp_path: Path) -> None:
 
 def test_numbers_are_rounded_and_foreign_types_refused() -> None:
     assert json_ready({"a": (1 / 3, np.float64(2.0), np.int64(4), True)}) == {"a": [0.333333, 2.0, 4, True]}
+    assert json_ready([NextExperiment("separates")]) == [{"why": "separates", "file": None}]
     with pytest.raises(TypeError, match="complex"):
         json_ready(1j)
