@@ -140,9 +140,8 @@ def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], 
     """Whether the causes leave too much of the gap where no fit has seen it."""
     left, gap = after**2 - floor**2, before**2 - floor**2
     if before <= CLEAR * floor:
-        behind = any(
-            not apart or c.stage != "ep" for c in causes
-        )  # the others have the pressure to show for themselves
+        # a cause before a measured pressure has that to show for itself
+        behind = any(not apart or c.stage != "ep" for c in causes)
         return behind and before > SLIGHT * floor and left > ERRATIC * gap
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)

@@ -7,7 +7,6 @@ no row is ever predicted by a fit that used it. Everything is predicted from the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import numpy.typing as npt
@@ -24,20 +23,6 @@ BLOCKS = 16
 _LONG_S = 20.0
 #: What the rows of a fold say nothing about stays within so many standard deviations of where the whole record put it.
 _LOOSE = 20.0
-
-
-@dataclass(frozen=True, slots=True)
-class Heldout:
-    """Errors reading - prediction on held-out rows, shape (n,), NaN where a row does not count; position units."""
-
-    before: FloatArray
-    retuned: FloatArray
-    after: FloatArray
-
-    @staticmethod
-    def rms(error: FloatArray) -> float:
-        """Root mean square over the rows that count."""
-        return float(np.sqrt(np.nanmean(np.square(error))))
 
 
 def fold_weights(case: Case) -> list[npt.NDArray[np.float64]]:
