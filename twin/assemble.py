@@ -51,9 +51,9 @@ def assembled(
         gap=gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, seed, doubt),
         where=where,
         confusable=judgement.confusable,
-        data_quality=tuple(n for r in case.recordings for n in r.notes) + tuple(notes),
+        data_quality=(*case.notes, *notes),
         effects_tested=(*limits, *smallest_seen(case.noise, case.scales, case.travel)),
-        structure=tuple(describe(frozenset({"pressure"} if case.sigma_p is not None else set()))),
+        structure=tuple(describe(case.signals)),
         noise=_noise(case),
         version=_version(),
     )

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from control.design import DesignModel
-from logs.recording import Recording
+from logs.recording import DataNote, Recording
 from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
@@ -68,6 +68,16 @@ class Case:
     @property
     def travel(self) -> float:
         return self.base.design.travel
+
+    @property
+    def signals(self) -> frozenset[str]:
+        """What is measured besides command and position, as `twin/where/isolability.py` names it."""
+        return frozenset() if self.sigma_p is None else frozenset({"pressure"})
+
+    @property
+    def notes(self) -> tuple[DataNote, ...]:
+        """What was found in the files, all recordings in turn."""
+        return tuple(note for recording in self.recordings for note in recording.notes)
 
 
 def make_case(

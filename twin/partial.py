@@ -20,11 +20,10 @@ from twin.closure import gap
 from twin.diagnosis import Diagnosis, Gap, Ranked
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.fit.smooth import smoothed_pressure
-from twin.fit.trial import Trial
 from twin.noise.copies import used_once
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Plant
+from twin.stages import driven_about
 from twin.verdict import Judgement
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
@@ -89,10 +88,10 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
         causes=(),
         ranking=_provisional(known.searches, weights),
         gap=numbers,
-        where=whereabouts(case, _driven(case), seed),
-        data_quality=tuple(n for r in case.recordings for n in r.notes) + tuple(known.notes),
+        where=whereabouts(case, driven_about(case.base, case), seed),
+        data_quality=(*case.notes, *known.notes),
         residual_signature={"interrupted_at": known.stage},
-        structure=tuple(describe(frozenset({"pressure"} if case.sigma_p is not None else set()))),
+        structure=tuple(describe(case.signals)),
         interrupted=True,
     )
     judgement = known.judgement
@@ -115,22 +114,13 @@ def _plain_case(known: Known) -> Case:
     return make_case(known.recordings, known.plant.design, known.plant.inserted, noise=noise)
 
 
-def _driven(case: Case) -> tuple[Trial, ...]:
-    """The trials with their smoothed measured pressure, as the design alone smooths it."""
-    if case.sigma_p is None:
-        return case.trials
-    memory = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
-    return tuple(t.with_pressure(smoothed_pressure(case.base, t, case.sigma_p, memory)) for t in case.trials)
-
-
 def _gap(case: Case, seed: int) -> Gap:
     """The gap of the design; nothing was fitted, so every row is unseen."""
     rows = [np.where(t.use_y, t.recording.position - predict_reading(case.base, t), np.nan) for t in case.trials]
     error = np.concatenate(rows)
     nothing = np.full(error.size, np.nan)
     memory = case.noise.position.correlation_samples
-    numbers = gap(error, nothing, nothing, case.sigma_y, case.travel, memory, seed)
-    return replace(numbers, reducible_closed=None)
+    return gap(error, nothing, nothing, case.sigma_y, case.travel, memory, seed)
 
 
 def _provisional(searches: list[Searcher], weights: Weights) -> tuple[Ranked, ...]:

@@ -85,12 +85,20 @@ def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
 
 def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> tuple[Trial, ...]:
     """The trials with their smoothed measured pressure, smoothed about the best converter model there is."""
-    assert case.sigma_p is not None
     best = min((converter.findings.none, *converter.findings.fits), key=lambda f: f.mse)
-    correlation = case.noise.pressure.correlation_samples if case.noise.pressure else 1.0
-    plant = best.plant
-    sigma = case.sigma_p
-    return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, correlation, careful=careful)) for t in case.trials)
+    return driven_about(best.plant, case, careful)
+
+
+def driven_about(plant: Plant, case: Case, careful: bool = True) -> tuple[Trial, ...]:
+    """The trials with their measured pressure, smoothed about what `plant` makes of the commands; as they are without.
+
+    `careful`: see `smoothed_pressure`.
+    """
+    noise, sigma = case.noise.pressure, case.sigma_p
+    if noise is None or sigma is None:
+        return case.trials
+    memory = noise.correlation_samples
+    return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, memory, careful=careful)) for t in case.trials)
 
 
 def _judge(

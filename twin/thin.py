@@ -70,8 +70,7 @@ def on_everything(case: Case, result: StageResult) -> StageResult:
     """What was decided on a look, with the trials of the whole case."""
     if result.case is case:
         return result
-    trials = case.trials if case.sigma_p is None else drive_by_measured(case, result.decisions[0])
-    return StageResult(case, result.decisions, trials)
+    return StageResult(case, result.decisions, drive_by_measured(case, result.decisions[0]))
 
 
 def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int) -> DataNote:

@@ -11,11 +11,11 @@ from logs.recording import Recording
 from twin.case import Case, make_case
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.smooth import smoothed_pressure
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.noise.model import estimate_noise
 from twin.pieces import cut_at_holes
 from twin.sensing import sense
+from twin.stages import driven_about
 from twin.thin import look_at
 
 
@@ -46,5 +46,5 @@ def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignMode
         return retuned_fit(look).plant.design
     first = _fitted(look, pressure_channel(look.trials, look.sigma_p))
     known = replace(look, base=first.plant)
-    driven = tuple(t.with_pressure(smoothed_pressure(known.base, t, look.sigma_p)) for t in look.trials)
-    return _fitted(known, position_channel(driven, look.sigma_y)).plant.design
+    channel = position_channel(driven_about(first.plant, look), look.sigma_y)
+    return _fitted(known, channel).plant.design

@@ -8,7 +8,10 @@ import numpy as np
 import pytest
 
 from control.design import DesignModel
+from tests.twin.judged import a_record
 from tests.twin.toy_valve import Toy, record, staircase
+from twin.catalog import effect
+from twin.plant import Inserted, Plant
 from twin.tuned import tuned_to
 
 
@@ -18,3 +21,10 @@ def test_numbers_come_back_from_a_design_that_never_moves() -> None:
     found = tuned_to([toy], replace(DesignModel(), a1=13.78))
     assert (found.a1, found.a2, found.compliance) == pytest.approx((8.78, 5.82, 0.19), rel=0.01)
     assert found.tau_s == pytest.approx(2.7, rel=0.03)
+
+
+def test_a_late_sensor_does_not_bend_the_converter_whose_pressure_was_measured() -> None:
+    late = Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (0.5,))
+    found = tuned_to([a_record(Plant(DesignModel(), (late,)))], DesignModel(ep_tau_s=0.45, compliance=0.21))
+    assert found.ep_tau_s == pytest.approx(0.30, rel=0.01)
+    assert found.compliance == pytest.approx(0.19, rel=0.03)
