@@ -15,7 +15,7 @@ import numpy.typing as npt
 
 from logs.recording import DataNote, FloatArray, Recording
 from twin.case import Case, Span, fine_step_s
-from twin.fit.trial import SETTLE_S, Trial, make_trial
+from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
 from twin.simulate import start_of
 from twin.stages import StageResult, drive_by_measured
@@ -135,11 +135,11 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     recording = whole.recording.slice(span.start, span.stop)
     rows = kept_rows(recording.command, max(2, round(share * recording.n)))
     thin = thinned(recording, rows)
-    bad = _false_rows(whole)[span.start : span.stop][rows]
+    false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
     start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
     play = start.play if start.play != start.position else None
-    trial = make_trial(thin, step_s, bad, play, _fresh_of(whole, span, rows))
+    trial = make_trial(thin, step_s, false, play, _fresh_of(whole, span, rows), vague)
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
 
 
@@ -156,13 +156,6 @@ def _led_in(trial: Trial, lead_s: float) -> Trial:
     time_s = trial.recording.time_s
     lead_s = min(lead_s, _LEAD_SHARE * float(time_s[-1] - time_s[0]))
     return replace(trial, use_y=trial.use_y & (time_s - time_s[0] >= lead_s))
-
-
-def _false_rows(trial: Trial) -> npt.NDArray[np.bool_]:
-    """Readings that no fit may see, the settling at the start of the record aside."""
-    early = trial.recording.time_s - trial.recording.time_s[0] < SETTLE_S
-    false: npt.NDArray[np.bool_] = np.isfinite(trial.recording.position) & ~trial.use_y & ~early
-    return false
 
 
 def kept_rows(command: FloatArray, most: int) -> Rows:

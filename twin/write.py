@@ -70,7 +70,7 @@ def series_of(outcome: Outcome) -> Series:
         heldout=np.isfinite(outcome.gap.after),
         travel=outcome.model.travel,
         pressure=np.concatenate(pressures) if measured else None,
-        false=np.concatenate([~t.use_y & np.isfinite(t.recording.position) for t in outcome.result.case.trials]),
+        false=np.concatenate([t.false for t in outcome.result.case.trials]),
         record=np.concatenate([np.full(r.n, k, dtype=np.int64) for k, r in enumerate(records)]),
         names=tuple(r.name for r in records),
         pressure_unit=outcome.model.pressure_unit,

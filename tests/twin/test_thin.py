@@ -89,6 +89,23 @@ def test_false_readings_stay_out(toy: Recording, monkeypatch: pytest.MonkeyPatch
     assert not (seen.trials[0].use_y & bad[rows]).any()
 
 
+@pytest.mark.parametrize("hole", [False, True])
+def test_steps_are_unseen_among_missing_rows_and_not_among_those_left_out(
+    toy: Recording, monkeypatch: pytest.MonkeyPatch, hole: bool
+) -> None:
+    swing = 8.5 + 4.0 * np.sin(2.0 * np.pi * toy.time_s / 8.0)
+    lively = replace(toy, command=np.where(toy.time_s % 60.0 < 10.0, swing, toy.command))
+    lost = (toy.time_s > 122.0) & (toy.time_s < 123.5) & hole  # within a swing the command moves on
+    kept = np.flatnonzero(~lost)
+    lively = replace(lively, **{name: getattr(lively, name)[kept] for name in ("time_s", "command", "position")})
+    case = make_case([replace(lively, pressure=None)], DesignModel())
+    seen = look(case, monkeypatch, most_rows=2000, coarse_s=1e9)
+    assert len(seen.spans) == 1 and seen.recordings[0].n < 0.5 * lively.n
+    vague_s = seen.recordings[0].time_s[seen.trials[0].vague]
+    assert bool(vague_s.size) is hole
+    assert ((vague_s > 123.0) & (vague_s < 127.0)).all()
+
+
 def test_windows_are_spread_and_lively(toy: Recording, monkeypatch: pytest.MonkeyPatch) -> None:
     calm = replace(toy, position=np.where(toy.time_s < 100.0, 0.2, toy.position))
     seen = look(make_case([calm], DesignModel()), monkeypatch, most_s=200.0)

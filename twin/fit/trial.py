@@ -22,6 +22,9 @@ _STEP, _LATE, _MOST = 0.02, 1.6, 0.5
 class Trial:
     """One recording with its fine grid. `use_p`, `use_y` (bool, shape (n,)) mark the rows that count.
 
+    Of those that do not, `false` are false readings of the position, and `vague` rows behind a step of the command at a
+    time that nobody knows.
+
     `start_play` is the play output at the start where the valve was moving, None where it stood with the stem.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh` (int, shape (n,)) is the row in which each row's reading was new, where readings are seen to be held.
@@ -34,6 +37,8 @@ class Trial:
     start_play: float | None
     use_p: npt.NDArray[np.bool_]
     use_y: npt.NDArray[np.bool_]
+    false: npt.NDArray[np.bool_]
+    vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
     fresh: npt.NDArray[np.intp] | None = None
 
@@ -48,15 +53,19 @@ def make_trial(
     bad_rows: npt.NDArray[np.bool_] | None = None,
     start_play: float | None = None,
     fresh: npt.NDArray[np.intp] | None = None,
+    vague: npt.NDArray[np.bool_] | None = None,
 ) -> Trial:
-    """Prepares a recording; `bad_rows` are false readings of the position that no fit may see."""
+    """Prepares a recording; `bad_rows` are false readings of the position that no fit may see.
+
+    `vague`: see `Trial`; found in the recording itself, unless its rows are some of another's.
+    """
     grid = make_grid(recording.time_s, step_s)
-    use_y = np.isfinite(recording.position)
-    if bad_rows is not None:
-        use_y &= ~bad_rows
+    known = np.isfinite(recording.position)
+    false = np.zeros_like(known) if bad_rows is None else known & bad_rows
+    vague = after_unseen_steps(recording) if vague is None else vague
+    use_y = known & ~false
     early = recording.time_s - recording.time_s[0] < SETTLE_S
     use_p = np.zeros_like(use_y)
-    vague = after_unseen_steps(recording)
     if recording.pressure is not None:
         use_p = np.isfinite(recording.pressure) & ~early & ~vague
     else:
@@ -65,7 +74,8 @@ def make_trial(
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
-    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y & ~early, fresh=fresh)
+    use_y &= ~early
+    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y, false, vague, fresh=fresh)
 
 
 def after_unseen_steps(recording: Recording) -> npt.NDArray[np.bool_]:
