@@ -29,8 +29,8 @@ _STEPS = 5
 _NEAR = (0.8, 1.3)
 #: Share of a record's time that is the whole of it.
 _WHOLE = 0.9
-#: The largest relative error of a design number that is asked about.
-_WRONG = 0.5
+#: The first and the largest relative error of a design number that is asked about.
+_FIRST_WRONG, _WRONG = 0.01, 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,6 +123,7 @@ def _form_limit(detector: Detector, effect: Effect, form: Form, main: Parameter)
 
 
 def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
+    """How far a design number has to be off to show: upwards, or downwards where that shows nothing."""
     design = detector.base.design
     size = reference(design, name)
 
@@ -130,7 +131,9 @@ def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
         changed = retuned(design, {name: nominal(design, name) + relative * size})
         return detector.shown(Plant(changed, detector.base.inserted), others)
 
-    limit = smallest_shown(shown, 0.01, _WRONG)
+    limit = smallest_shown(shown, _FIRST_WRONG, _WRONG)
+    if limit > _WRONG and nominal(design, name) > _WRONG * size:  # a bound that was never met shows when it is lower
+        limit = smallest_shown(lambda relative: shown(-relative), _FIRST_WRONG, _WRONG)
     if limit > _WRONG:
         return EffectTest(f"parameter:{name}", False, "this record does not excite it", name)
     return EffectTest(f"parameter:{name}", True, "", name, limit * size, unit(design, name))

@@ -11,10 +11,12 @@ from hypothesis import strategies as st
 
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
+from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import DecisionRules
 from twin.detectable import detection_limits, smallest_shown, unseen_in_windows
 from twin.diagnosis import EffectTest
+from twin.fit.channel import chain_channel
 from twin.plant import Inserted, Plant
 from twin.sensing import smallest_seen
 from twin.stages import StageResult
@@ -63,6 +65,19 @@ def test_every_cause_has_a_line(healthy: StageResult) -> None:
     assert {t.name for t in tests} == set(effects()) | numbers
     supply = next(t for t in tests if t.name == "supply_saturation")
     assert supply.detection_limit is None or 4.0 < supply.detection_limit < 20.0  # a pressure, not a distance
+
+
+def test_a_rate_limit_that_was_never_met_shows_when_it_is_lower() -> None:
+    design = replace(DesignModel(), rate_limit=0.25)  # a stroke's lag alone is slower
+    case = make_case([replace(a_record(Plant(design)), pressure=None)], design)
+    channel = chain_channel(case.trials, case.sigma_y)
+    tests = detection_limits([channel], case.base, case.scales, [], DecisionRules())
+    [test] = [t for t in tests if t.name == "parameter:rate_limit"]
+    assert test.detection_limit is not None
+    lower, higher = (replace(design, rate_limit=0.25 + side * test.detection_limit) for side in (-1.0, 1.0))
+    plain = channel.residuals(case.base)
+    assert np.ptp(channel.residuals(Plant(lower)) - plain) > 1.0
+    assert np.ptp(channel.residuals(Plant(higher)) - plain) < 1e-6
 
 
 def test_what_is_slow_is_not_promised_from_windows(healthy: StageResult) -> None:
