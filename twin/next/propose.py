@@ -58,21 +58,26 @@ def propose(
         return _coverage(result, judgement, tests, rules, limits)
     words = [_alike_words(dispute, case.sigma_p is not None) for dispute in open_ if dispute.alike]
     needed = _SAFE * weights.temperature * math.log(1.0 / weights.confusable)
-    best: Proposal | None = None
+    nearest: tuple[Experiment, float] | None = None
     for dispute in open_:
         if not dispute.rivals:
             continue
         found = best_experiment(dispute, _scale(result, dispute), limits, needed)
         gains = {r.name: d.gain / needed for r, d in zip(dispute.rivals, found.distances, strict=True)}
-        if max(gains.values()) >= _HELPS:
+        gain = max(gains.values())
+        if gain >= _HELPS:
             return _experiment(result, dispute, found, gains, words)
         words += [_below_noise(dispute, found, case.sigma_p is not None, result)]
-        if best is None and max(gains.values()) >= _HINTS:
-            best = _hint(found, max(gains.values()))
-    if best is not None:
-        text = " ".join([*words, best.next.why])
-        return Proposal(NextExperiment(text, FILE), best.file, best.experiment)
+        if gain >= _HINTS and (nearest is None or gain > nearest[1]):
+            nearest = found.experiment, gain
+    if nearest is not None:
+        return _hint(*nearest, words)
     return Proposal(NextExperiment(" ".join(words) or "No experiment of the library separates what is left."))
+
+
+def _proposed(experiment: Experiment, why: str, said: str = "") -> Proposal:
+    """The experiment with its file; `why` stands in the file, and in the diagnosis where nothing else is `said`."""
+    return Proposal(NextExperiment(said or why, FILE), toml_text(experiment, why), experiment)
 
 
 def _settled(result: StageResult, judgement: Judgement) -> Proposal:
@@ -93,14 +98,14 @@ def _settled(result: StageResult, judgement: Judgement) -> Proposal:
     return Proposal(NextExperiment(why))
 
 
-def _hint(found: Found, gain: float) -> Proposal:
+def _hint(found: Experiment, gain: float, words: Sequence[str]) -> Proposal:
     """The experiment that comes nearest, where none is enough: with the next diagnosis it may be another dispute."""
-    experiment = rounded(found.experiment)
+    experiment = rounded(found)
     why = (
         f"Without another signal the most that an experiment can add is {100.0 * gain:.0f} % of what settles it, "
         f"in {duration_words(experiment.duration_s)}."
     )
-    return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
+    return _proposed(experiment, why, " ".join([*words, why]))
 
 
 def _experiment(
@@ -121,8 +126,7 @@ def _experiment(
         f"predictions differ by up to {size:.2g} {unit} RMS beyond what re-fitting could hide."
     )
     why = why[0].upper() + why[1:] + (f" It leaves {' and '.join(open_)} open." if open_ else "")
-    text = " ".join([why, *words])
-    return Proposal(NextExperiment(text, FILE), toml_text(experiment, why), experiment)
+    return _proposed(experiment, why, " ".join([why, *words]))
 
 
 def _coverage(
@@ -147,7 +151,7 @@ def _coverage(
         f"{start}The next experiment would show {_blind_words(found.shown, tests)}, in "
         f"{duration_words(experiment.duration_s)}."
     )
-    return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
+    return _proposed(experiment, why)
 
 
 def _fresh_start(result: StageResult, limits: Limits, start: str) -> Proposal | None:
@@ -161,7 +165,7 @@ def _fresh_start(result: StageResult, limits: Limits, start: str) -> Proposal | 
         f"{start}The records are a poor ground to look for others: {poor}. Sweep the valve in open loop over its full "
         f"stroke with inner reversals ({experiment.kind}, {duration_words(experiment.duration_s)}), and diagnose that."
     )
-    return Proposal(NextExperiment(why, FILE), toml_text(experiment, why), experiment)
+    return _proposed(experiment, why)
 
 
 def _blind_words(names: Sequence[str], tests: Sequence[EffectTest]) -> str:
