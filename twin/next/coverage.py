@@ -45,7 +45,8 @@ def blind_spots(tests: Sequence[EffectTest], scales: Scales) -> list[BlindSpot]:
     for test in tests:
         if test.name not in effects():
             continue
-        form = effects()[test.name].forms[0]
+        effect = effects()[test.name]
+        form = effect.form(test.form) if test.form else effect.forms[0]
         inserted = Inserted(test.name, form, _clear(form, scales))
         main = next((k for k, p in enumerate(form.parameters) if p.name == test.parameter), None)
         hidden = main is not None and test.detection_limit is not None and _beyond(form, main, test, scales)

@@ -18,7 +18,9 @@ from tests.twin.next.two_lags import dispute, record, result
 from twin.choose.decide import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest
+from twin.effect import Scales
 from twin.next.candidates import library
+from twin.next.coverage import blind_spots
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
 from twin.next.fresh import poor_ground
@@ -80,6 +82,15 @@ def test_after_no_gap_it_shows_what_the_records_could_not() -> None:
 def test_an_effect_seen_only_when_huge_counts_as_not_shown() -> None:
     huge = EffectTest("creep", True, "", "share", 0.5, "1")
     assert "creep" in proposed(result(*PAIR), judged(), (huge,)).next.why
+
+
+def test_what_is_clear_is_clear_in_the_form_that_shows_first() -> None:
+    def spots(share: float) -> list[str]:
+        test = EffectTest("distributed_hysteresis", True, "", "soft_share", share, "1", "partly_soft")
+        return [spot.inserted.form.name for spot in blind_spots([test], Scales())]
+
+    assert spots(0.5) == ["partly_soft"]
+    assert spots(0.01) == []
 
 
 def test_what_a_record_shows_only_from_a_size_on_is_said_with_that_size() -> None:
