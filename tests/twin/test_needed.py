@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -12,9 +13,12 @@ from tests.twin.judged import a_record, judged
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision, DecisionRules, plainer
+from twin.choose.lean import _Leaning, leaning
 from twin.choose.trim import dropped, trimmed
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause as Named
+from twin.effect import Scales
+from twin.fit.space import Cause
 from twin.gap import GapParts, idle_cause
 from twin.plant import Inserted, Plant
 from twin.stages import StageResult
@@ -25,14 +29,48 @@ def with_lag(design: DesignModel, lag_s: float = 0.3) -> Plant:
     return Plant(design, (Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (lag_s,)),))
 
 
+@cache
+def slipped(slip: float) -> tuple[StageResult, Judgement]:
+    return judged(a_record(with_lag(DesignModel(compliance=0.19 * (1.0 + slip)), 0.1)))
+
+
 @pytest.mark.parametrize(("slip", "accused"), [(0.015, True), (0.0, False)])
 def test_a_number_that_slipped_a_little_and_matters_much_is_accused(slip: float, accused: bool) -> None:
     design = DesignModel(compliance=0.19 * (1.0 + slip))
-    result, judgement = judged(a_record(with_lag(design, 0.1)))
+    result, judgement = slipped(slip)
     assert ("parameter:compliance" in {c.name for c in judgement.causes}) is accused
     assert len(judgement.causes) == 1 + accused
     compliance = result.plant().design.compliance
     assert compliance == pytest.approx(design.compliance, rel=1e-3)
+
+
+def lag_alone() -> tuple[Decision, Scales]:
+    """What is decided of the slipped compliance before anybody asks on what the lag leans."""
+    result, _ = slipped(0.015)
+    before = result.decisions[-1]
+    lag = next(f for f in before.findings.fits if f.names == ("sensor_lag",))
+    return replace(before, accepted=lag), result.case.scales
+
+
+def test_a_number_that_nobody_is_sure_of_is_not_accused() -> None:
+    decision, scales = lag_alone()
+    assert leaning(decision, scales, DecisionRules()).names == ("sensor_lag", "parameter:compliance")
+    assert leaning(decision, replace(scales, doubt=0.2), DecisionRules()) is decision
+
+
+def test_a_cause_as_likely_that_leans_on_no_number_is_preferred(monkeypatch: pytest.MonkeyPatch) -> None:
+    decision, scales = lag_alone()
+    other = effect_causes(decision.findings.channel)[0]
+    upright = replace(decision.accepted, space=replace(decision.accepted.space, causes=(other,)))
+    assert other.name != "sensor_lag"
+
+    def needed(self: _Leaning) -> Cause | None:
+        return None if self.decision.accepted.names == upright.names else Cause("parameter:compliance")
+
+    monkeypatch.setattr(_Leaning, "needed", needed)
+    for mse, wanted in ((upright.mse, other.name), (upright.mse + 1.0, "sensor_lag")):
+        beside = replace(decision.findings, fits=(*decision.findings.fits, replace(upright, mse=mse)))
+        assert leaning(replace(decision, findings=beside), scales, DecisionRules()).names[0] == wanted
 
 
 @pytest.fixture(scope="module")

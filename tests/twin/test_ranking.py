@@ -36,6 +36,12 @@ def test_what_was_taken_back_loses_its_probability_and_the_others_keep_theirs() 
     ]
 
 
+def test_when_all_that_was_taken_for_a_cause_is_taken_back_nobody_is_left() -> None:
+    lines = ranked(found("creep"), Judgement("no_gap", (), LINES, ()), {})  # type: ignore[arg-type]
+    assert {line.name for line in lines} == {"creep", "stiction", "dead_time"}
+    assert all(line.rejected and line.probability == 0.0 for line in lines)
+
+
 def test_candidates_of_no_probability_go_by_fit_and_not_by_name() -> None:
     lines = (Ranked("creep", 0.0, None), Ranked("dead_time", 0.0, None), Ranked("ep_tau", 0.0, None))
     order = [line.name for line in ranked(found(), Judgement("no_gap", (), lines, ()), {})]  # type: ignore[arg-type]

@@ -10,8 +10,17 @@ from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import Recording
 from tests.twin.trials import DESIGN, staircase, trial_of
+from twin.case import make_case
+from twin.choose.decide import DecisionRules, decide
+from twin.choose.score import make_yardstick
+from twin.choose.search import Findings
 from twin.diagnose import diagnose
+from twin.fit.channel import pressure_channel
+from twin.fit.fitting import fit
+from twin.fit.space import make_space
 from twin.plant import Plant, pressure_response, reading_response, stem_response
+from twin.stages import StageResult, driven_about
+from twin.wander import wander
 
 
 def wandering(size_psi: float) -> Recording:
@@ -37,3 +46,22 @@ def test_what_wanders_is_noise_while_it_is_small(size_psi: float, verdict: str, 
     found = diagnose([wandering(size_psi)], DESIGN).diagnosis
     assert found.verdict == verdict
     assert any("wandering" in note.handled for note in found.data_quality) is said
+
+
+def unexplained(recordings: list[Recording]) -> StageResult:
+    """A result without a single candidate."""
+    case = make_case(recordings, DESIGN)
+    assert case.sigma_p is not None
+    channel = pressure_channel(case.trials, case.sigma_p)
+    none = fit(channel, make_space(case.base, (), (), case.scales), [np.zeros(0)])
+    findings = Findings(channel, none, none, (), make_yardstick(none.residuals, channel.use))
+    return StageResult(case, (decide(findings, DecisionRules()),), driven_about(case.base, case))
+
+
+def test_where_commands_were_repeated_it_is_known_whether_it_comes_back() -> None:
+    one = wandering(0.008)
+    dice = np.random.default_rng(9)
+    again = replace(one, name="again", position=one.position + dice.normal(0.0, 6e-4, one.n))
+    alone, twice = unexplained([one]), unexplained([one, again])
+    assert wander(alone.case, alone) is not None
+    assert wander(twice.case, twice) is None
