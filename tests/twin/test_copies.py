@@ -57,9 +57,27 @@ def test_repeats_are_no_copies() -> None:
     assert len(used_once(coarse)[0]) == 2
 
 
+def test_the_same_readings_at_other_times_are_another_record() -> None:
+    [one] = runs([SIGMA])
+    assert len(used_once([one, replace(one, time_s=1.5 * one.time_s)])[0]) == 2
+    assert len(used_once([one, replace(one, time_s=one.time_s + 1000.0)])[0]) == 1
+
+
 def test_what_never_changes_is_no_copy() -> None:
     assert not copied(np.ones(50), np.ones(50))
     assert not copied(np.full(50, np.nan), np.full(50, np.nan))
+
+
+def test_a_record_pasted_behind_itself_repeats_nothing() -> None:
+    [one] = runs([SIGMA])
+
+    def behind(position: FloatArray) -> Recording:
+        twice = {name: np.tile(getattr(one, name), 2) for name in ("command", "pressure")}
+        times = np.concatenate([one.time_s, one.time_s + one.duration_s + DT])
+        return replace(one, time_s=times, position=np.concatenate([one.position, position]), **twice)
+
+    assert find_repeats([behind(one.position)]) == []
+    assert len(find_repeats([behind(one.position + coloured(one.n, 0.0, SIGMA, 7))])) == 1
 
 
 def test_an_overlap_is_no_repeat_and_leaves_the_noise_as_it_is() -> None:

@@ -129,6 +129,23 @@ def test_a_number_that_adds_less_than_any_further_cause_would_have_to_is_left_ou
     assert found.names == ("parameter:rate_limit",)
 
 
+@pytest.mark.parametrize(("prior", "plain"), [(0.0, False), (1e3, True)])
+def test_several_numbers_are_no_plainer_than_an_effect_with_the_better_evidence(prior: float, plain: bool) -> None:
+    findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
+    two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
+    lag = replace(two.space, causes=effect_causes(findings.channel)[:1])
+    effect_of_the_same_error = replace(two, space=lag, prior=prior)
+    found = plainer(replace(findings, fits=(two, effect_of_the_same_error)), effect_of_the_same_error, rules)
+    assert (found is two) is plain
+
+
+def test_where_one_number_is_wrong_a_further_one_is_ten_times_as_rare() -> None:
+    findings = slipped(0.015)[0].decisions[-1].findings
+    two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
+    one = replace(two, space=replace(two.space, causes=two.space.causes[:1]))
+    assert findings.score(one) - findings.score(two) == pytest.approx(np.log(10.0))
+
+
 def test_what_happens_once_is_no_candidate_for_several_recordings(position: tuple[StageResult, Decision]) -> None:
     channel = position[1].findings.channel
     several = replace(channel, trials=(*channel.trials, *channel.trials))
