@@ -1,11 +1,11 @@
-"""Closure against the floor and the test for no gap, on residuals of known size."""
+"""Closure against the floor, on residuals of known size."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from twin.closure import closure, equivalence, gap
+from twin.closure import closure, gap
 
 N = 6000
 FLOOR = 0.14
@@ -60,23 +60,3 @@ def test_gap_is_in_percent_of_travel_and_repeatable() -> None:
     assert numbers.before == pytest.approx(2 * np.hypot(4.0, FLOOR), rel=0.01)
     assert numbers.noise_floor == pytest.approx(0.28)
     assert numbers.reducible_closed is not None
-
-
-def test_equivalence_shows_no_gap_only_with_enough_data() -> None:
-    assert equivalence(noise(2), FLOOR, 0.05).no_gap
-    assert not equivalence(noise(2)[:40], FLOOR, 0.05).no_gap
-    gapped = equivalence(noise(2) + slow(0.10), FLOOR, 0.05)
-    assert not gapped.no_gap
-    assert gapped.excess == pytest.approx(0.10, abs=0.02)
-    assert gapped.ci95[0] <= 0.10 <= gapped.ci95[1]
-    assert not equivalence(noise(2), FLOOR, 0.05, floor_relative_error=0.5).no_gap
-
-
-def test_equivalence_errs_at_its_level() -> None:
-    """With the true excess at the margin, `no gap` must come in about 5 % of the cases."""
-    rng = np.random.default_rng(3)
-    said = 0
-    for seed in range(200):
-        residual = np.hypot(FLOOR, 0.07) * rng.standard_normal(1500)
-        said += equivalence(residual, FLOOR, 0.07, seed=seed).no_gap
-    assert said <= 20

@@ -52,10 +52,6 @@ class SignalNoise:
     tail_ratio: float = 1.0
     by_source: Mapping[str, float] = field(default_factory=dict)
 
-    def effective_samples(self, rows: int) -> float:
-        """How many independent values `rows` consecutive readings carry."""
-        return max(1.0, rows / self.correlation_samples)
-
     def whiten(self, residual: FloatArray) -> FloatArray:
         """The residual, shape (n,), as independent values of unit variance if it were this noise; NaN stays NaN."""
         if self.sigma <= 0.0:
