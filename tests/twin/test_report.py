@@ -163,6 +163,8 @@ def test_a_fast_stroke_is_drawn_whole() -> None:
     rows = thin_together((driver, driver / 10.0 + noise), 2000)
     assert rows.size < n / 10
     assert set(range(2500, 2600)) <= set(rows.tolist())
+    broken = np.where(np.arange(n) % 1000 == 7, np.nan, driver)
+    assert set(range(7, n, 1000)) <= set(thin_together((broken, driver), 2000).tolist())  # a cut stays a cut
 
 
 def test_in_the_plane_models_are_drawn_on_the_rows_of_what_was_measured() -> None:

@@ -120,8 +120,8 @@ class Searcher:
         return self._likely(pairs)[0].mse - 1.0 < self.rules.scant * (none.mse - 1.0)
 
     def _singles(self) -> list[Fit]:
-        causes = number_causes(self.channel) + effect_causes(self.channel, self.base)
         numbers = number_causes(self.channel)
+        causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
         self.tried[:] = [f for f in fits if len(f.names) == 1]

@@ -48,7 +48,8 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
         return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
     y = reading[known]
     apart = y - median_filter(y, _WINDOW, mode="nearest")
-    bound = SIGMAS * max(noise_sigma, 1e-12)
+    sigma = max(noise_sigma, 1e-12)
+    bound = SIGMAS * sigma
     false = _isolated(y, np.abs(apart) > bound, bound)
     rows[known] = false
     count = int(false.sum())
@@ -57,9 +58,7 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     sizes = np.abs(apart[false])
     spread = max(float(np.ptp(y)), bound)
     # each false reading: somewhere in the range, instead of that far out on a Gaussian
-    gains = (
-        np.minimum(0.5 * (sizes / (bound / SIGMAS)) ** 2, 50.0) - log(spread / (bound / SIGMAS)) + log(count / y.size)
-    )
+    gains = np.minimum(0.5 * (sizes / sigma) ** 2, 50.0) - log(spread / sigma) + log(count / y.size)
     ratio = max(0.0, float(gains.sum()))
     estimates = {
         "rate": Estimate(count / y.size, _binomial(count, y.size), "1/sample"),

@@ -86,7 +86,7 @@ def planes(series: Series) -> Figure:
 
 @drawn("How often the residual exceeds a size, and its spectrum, before and after")
 def residual_shape(series: Series, floor_percent: float) -> Figure:
-    """Share of time above a size, and spectrum of the residual before and after, on held-out rows, with the floor."""
+    """The residual before and after: share of held-out time above a size, with the floor, and spectrum of it all."""
     from matplotlib.ticker import LogLocator
 
     figure = new_figure(10.6, 2.9)
