@@ -14,7 +14,7 @@ from tests.twin.judged import a_record, judged
 from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import DecisionRules
-from twin.detectable import detection_limits, smallest_shown, unseen_in_windows
+from twin.detectable import Detector, _nuisance, detection_limits, smallest_shown, unseen_in_windows
 from twin.diagnosis import EffectTest
 from twin.fit.channel import chain_channel
 from twin.plant import Inserted, Plant
@@ -65,6 +65,17 @@ def test_every_cause_has_a_line(healthy: StageResult) -> None:
     assert {t.name for t in tests} == set(effects()) | numbers
     supply = next(t for t in tests if t.name == "supply_saturation")
     assert supply.detection_limit is None or 4.0 < supply.detection_limit < 20.0  # a pressure, not a distance
+
+
+def test_what_retuning_would_hide_shows_nothing_and_a_number_does_not_hide_itself(healthy: StageResult) -> None:
+    case, channel = healthy.case, healthy.decisions[-1].findings.channel
+    nuisance = np.linalg.qr(_nuisance(channel, case.base, case.scales))[0]
+    detector = Detector(channel, case.base, case.scales, nuisance, channel.residuals(case.base), 1.0)
+    slower = Plant(replace(case.base.design, tau_s=1.001 * case.base.design.tau_s))
+    assert detector.shown(slower, nuisance) < 1e-2 * detector.shown(slower, nuisance[:, :0])
+    tests = detection_limits([channel], case.base, case.scales, [], DecisionRules())
+    [tau] = [t for t in tests if t.name == "parameter:tau"]
+    assert tau.detection_limit is not None and tau.detection_limit < 0.01 * case.base.design.tau_s
 
 
 def test_a_rate_limit_that_was_never_met_shows_when_it_is_lower() -> None:

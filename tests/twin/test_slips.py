@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,10 +13,11 @@ from tests.twin.judged import a_record, judged
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.candidates import number_causes
+from twin.choose.slips import several_slips
 from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import fit, starts_of
-from twin.fit.space import make_space
+from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
 
 OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14)
@@ -45,6 +47,22 @@ def test_an_effect_is_not_put_down_to_the_numbers() -> None:
 def test_a_design_without_a_gap_is_not_taken_apart() -> None:
     result, _ = judged(a_record(Plant(DesignModel())), DesignModel())
     assert all(len(f.names) < 3 for d in result.decisions for f in d.findings.fits)
+
+
+@pytest.mark.parametrize(
+    ("none", "retuned", "sizes"),
+    [(100.0, 1.5, [5, 4, 3]), (100.0, 5.0, []), (1.9, 1.0, [])],  # explained, not explained, nothing to explain
+)
+def test_numbers_are_taken_together_where_retuning_explains_a_gap(
+    none: float, retuned: float, sizes: list[int]
+) -> None:
+    def refit(causes: tuple[Cause, ...], _from: object) -> SimpleNamespace:
+        return SimpleNamespace(mse=float(len(causes)), space=SimpleNamespace(causes=causes))
+
+    slips = [Cause(f"parameter:{name}") for name in sorted(EVERYTHING)]
+    before, after = SimpleNamespace(mse=none), SimpleNamespace(mse=retuned)
+    found = several_slips(slips, before, after, refit, 0.02)  # type: ignore[arg-type]
+    assert [len(one.space.causes) for one in found] == sizes
 
 
 def test_numbers_start_far_off_too_unless_they_are_known_from_another_fit() -> None:

@@ -28,3 +28,8 @@ def test_a_late_sensor_does_not_bend_the_converter_whose_pressure_was_measured()
     found = tuned_to([a_record(Plant(DesignModel(), (late,)))], DesignModel(ep_tau_s=0.45, compliance=0.21))
     assert found.ep_tau_s == pytest.approx(0.30, rel=0.01)
     assert found.compliance == pytest.approx(0.19, rel=0.03)
+
+
+def test_a_record_that_rests_at_both_stops_gives_the_travel() -> None:
+    found = tuned_to([a_record(Plant(DesignModel()))], DesignModel(travel=0.6))
+    assert found.travel == pytest.approx(0.5625, rel=0.003)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from logs.recording import FloatArray, Recording
@@ -28,6 +30,14 @@ def test_rows_behind_a_step_in_a_hole_do_not_count_and_all_others_do() -> None:
 def test_a_step_between_neighbouring_rows_and_a_hole_without_a_step_cost_nothing() -> None:
     assert not after_unseen_steps(sampled(EVEN)).any()
     assert not after_unseen_steps(sampled(EVEN[(EVEN < 20.0) | (EVEN > 22.0)])).any()
+
+
+def test_what_a_command_moves_by_itself_is_no_step() -> None:
+    time_s = EVEN[(EVEN < 20.0) | (EVEN > 21.0)]
+    whole = sampled(time_s)
+    trembling = np.where(time_s > 20.5, 0.01, 0.0) * np.ptp(whole.command)
+    assert not after_unseen_steps(replace(whole, command=whole.command + trembling)).any()
+    assert after_unseen_steps(replace(whole, command=whole.command + 4.0 * trembling)).any()
 
 
 def test_where_nearly_everything_would_go_nothing_goes() -> None:

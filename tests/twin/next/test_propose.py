@@ -127,6 +127,9 @@ def test_a_stem_that_hardly_moves_is_a_poor_ground() -> None:
     small = replace(record, position=0.3 * record.position)
     assert "of its travel only" in str(poor_ground([small], 0.5625))
     assert poor_ground([small, record], 0.5625) is None
+    looped = replace(record, target=record.position)
+    assert "closed loop" in str(poor_ground([looped], 0.5625))
+    assert poor_ground([looped, record], 0.5625) is None
 
 
 def test_the_rest_is_said_of_the_signal_in_which_it_is() -> None:
