@@ -120,3 +120,6 @@ def test_a_swing_is_a_limit_cycle_and_a_constant_error_is_none() -> None:
     assert calm.limit_cycle == 0.0
     assert restless.limit_cycle == pytest.approx(2.0, rel=0.1)
     assert restless.never_settled >= 2
+    noise = 0.0006 * 0.5625 * np.random.default_rng(2).standard_normal(off.size)
+    noisy, smooth = judge_loop(record, off + noise, 0.5625), judge_loop(record, swing + noise, 0.5625)
+    assert noisy.limit_cycle == 0.0 and smooth.limit_cycle == pytest.approx(restless.limit_cycle, rel=0.2)

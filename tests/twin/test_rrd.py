@@ -11,7 +11,7 @@ import pytest
 from hal.errors import BadInput
 from tests.twin.report_example import diagnosis, series
 from twin.report.story import story
-from twin.rrd import write_rrd
+from twin.rrd import _strips, write_rrd
 
 
 def entities(path: Path) -> dict[str, int]:
@@ -51,6 +51,17 @@ def test_loops_in_the_plane_share_their_rows(tmp_path: Path) -> None:
             drawn[chunk.entity_path] = [point[0] for strip in strips for point in strip]
     measured, design, updated = (drawn[f"/plane/loop/{name}"] for name in ("measured", "design", "updated"))
     assert design == updated == measured
+
+
+def test_loops_are_cut_between_recordings_and_where_readings_are_missing() -> None:
+    shown = series(60)
+    assert shown.record is not None
+    y = shown.position.copy()
+    y[10] = np.nan
+    rows = np.arange(y.size)
+    cut = _strips(shown.command, y, rows, shown)
+    assert len(cut) == 1 + np.unique(shown.record).size > 2
+    assert sum(len(strip) for strip in cut) == y.size - 1
 
 
 def test_bare_series_and_impossible_places(tmp_path: Path) -> None:
