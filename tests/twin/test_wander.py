@@ -61,7 +61,9 @@ def unexplained(recordings: list[Recording]) -> StageResult:
 def test_where_commands_were_repeated_it_is_known_whether_it_comes_back() -> None:
     one = wandering(0.008)
     dice = np.random.default_rng(9)
-    again = replace(one, name="again", position=one.position + dice.normal(0.0, 6e-4, one.n))
+    assert one.pressure is not None
+    noise, noise_psi = dice.normal(0.0, 6e-4, one.n), dice.normal(0.0, 5e-3, one.n)
+    again = replace(one, name="again", position=one.position + noise, pressure=one.pressure + noise_psi)
     alone, twice = unexplained([one]), unexplained([one, again])
     assert wander(alone.case, alone) is not None
     assert wander(twice.case, twice) is None
