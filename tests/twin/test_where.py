@@ -131,6 +131,19 @@ def test_classes_follow_the_stem_not_the_noise() -> None:
     assert set(np.unique(classes.regime)) == {0, 1, 2, 3}
 
 
+@pytest.mark.parametrize("row_s", [1.0, 10.0])
+def test_a_slow_record_moves_too(row_s: float) -> None:
+    """Half a percent of travel from row to row is motion, whether rows are a second or ten apart."""
+    time = np.arange(200) * row_s
+    clean = TRAVEL * (0.5 + 0.3 * np.interp(np.arange(200), [0, 60, 100, 160, 199], [-1.0, 0.0, 0.0, 1.0, 1.0]))
+    noisy = clean + 2e-4 * TRAVEL * np.random.default_rng(6).standard_normal(clean.size)
+    classes = classify(time, noisy, clean, clean, 2e-4 * TRAVEL, TRAVEL)
+    closing, still = DIRECTIONS.index("closing"), DIRECTIONS.index("still")
+    assert np.all(classes.direction[5:55] == closing) and np.all(classes.direction[105:155] == closing)
+    assert np.all(classes.direction[65:95] == still) and np.all(classes.direction[165:] == still)
+    assert np.all(classes.regime[5:55] == REGIMES.index("moving"))
+
+
 def test_smoother_removes_noise_and_keeps_edges() -> None:
     rng = np.random.default_rng(5)
     truth = Toy(ep_tau_s=0.6).pressure(COMMAND, DT)

@@ -15,6 +15,7 @@ IntArray = npt.NDArray[np.int64]
 DIRECTIONS = ("closing", "opening", "still")
 REGIMES = ("deadband", "moving", "reversal", "end_stop")
 _BELL_S = 0.5  # standard deviation of the bell under which speed is taken
+_LEAST = 1e-3  # of travel per second, or per row of a slow record: what is slower is called still
 _START, _STOP = 4.0, 2.0  # sigmas of speed noise to start moving, and to go on
 
 
@@ -38,7 +39,8 @@ def classify(
 ) -> Regimes:
     """Classes of every row; `pressure` is the smoothed measured one, or the model's where none was measured.
 
-    closing, opening: the smoothed reading rises or falls faster than its noise and 0.1 % of travel per second.
+    closing, opening: the smoothed reading rises or falls faster than its noise and 0.1 % of travel per second (per row
+    where rows are further apart).
     end_stop: still, with the reading or the prediction within 1 % of travel of an end.
     reversal: the stem coasts against the pressure's direction, or has moved for less than `after_s` the other way.
     deadband: still elsewhere. moving: all other motion.
@@ -47,7 +49,7 @@ def classify(
     bell = max(_BELL_S / period, 1.0)
     smooth = gaussian_filter1d(_filled(reading), bell, mode="nearest")
     speed_noise = speed_sigma(noise_sigma, period, bell, correlation_samples)
-    motion = _motion(np.gradient(smooth, time_s), speed_noise, 1e-3 * travel)
+    motion = _motion(np.gradient(smooth, time_s), speed_noise, _LEAST * travel / max(period, 1.0))
     pressure_motion = np.sign(np.gradient(gaussian_filter1d(_filled(pressure), bell, mode="nearest"), time_s))
     moving = motion != 0
     near = 0.01 * travel + 2.0 * noise_sigma / np.sqrt(bell)
