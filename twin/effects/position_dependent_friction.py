@@ -38,8 +38,8 @@ def _knot(at: float) -> Parameter:
     )
 
 
-#: Points of the travel at which the profile is free.
-KNOTS = tuple(k / 6 for k in range(7))
+#: Points of the travel at which the profile is free: four for a packing that grips three times along the stroke.
+KNOTS = tuple(k / 12 for k in range(13))
 
 _CENTRE = Parameter(
     name="centre",
