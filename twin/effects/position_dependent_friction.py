@@ -38,7 +38,7 @@ def _knot(at: float) -> Parameter:
     )
 
 
-#: Points of the travel at which the profile is free: four for a packing that grips three times along the stroke.
+#: Points of the travel at which the profile is free: four pieces for each of three waves along the stroke.
 KNOTS = tuple(k / 12 for k in range(13))
 
 _CENTRE = Parameter(
