@@ -28,7 +28,7 @@ AFTER: Colour = (38, 190, 180)
 FLOOR: Colour = (96, 108, 120)
 COMMAND: Colour = (110, 168, 254)
 _STATES = {"deadband": 0x78909CFF, "moving": 0x66BB6AFF, "reversal": 0xFFB74DFF, "end_stop": 0xBA68C8FF}
-_HELD = {"held out": 0x26BEB4FF, "fitted": 0x455A64FF}
+_HELD = {"held out in turn": 0x26BEB4FF, "not counted": 0x455A64FF}
 _PLANE_POINTS = 40_000
 _LINE_POINTS = 60_000  # more than any screen shows, and a file of a few MB however long the record
 _TRAIL_S = 30.0
@@ -110,7 +110,7 @@ def _send_states(stream: rr.RecordingStream, diagnosis: Diagnosis, series: Serie
     if time.size > 1:
         regime = classify(time, reading, series.before, driver, sigma, series.travel).regime
         _changes(stream, "/state/regime", time, [list(REGIMES)[code] for code in regime], _STATES)
-    held = ["held out" if flag else "fitted" for flag in series.heldout]
+    held = ["held out in turn" if flag else "not counted" for flag in series.heldout]
     _changes(stream, "/state/data", time, held, _HELD)
 
 

@@ -152,7 +152,7 @@ def _line(
 def _shade_heldout(axes: Axes, series: Series, time: FloatArray) -> None:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], series.heldout, [False]]).astype(np.int8)))
     for number, (start, stop) in enumerate(zip(edges[::2], edges[1::2], strict=True)):
-        label = "held out" if number == 0 and not series.heldout.all() else None
+        label = "held out in turn" if number == 0 and not series.heldout.all() else None
         axes.axvspan(time[start], time[stop - 1], color=HELDOUT, linewidth=0, zorder=0, label=label)
 
 

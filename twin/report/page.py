@@ -114,5 +114,5 @@ def _records(series: Series) -> list[tuple[str, str]]:
             duration = float(series.time_s[at[-1]] - series.time_s[at[0]])
             rate = (at.size - 1) / duration if duration > 0 else float("nan")
             held = 100.0 * float(np.mean(series.heldout[at]))
-            rows.append((label, f"{at.size:,} rows, {duration:,.0f} s at {rate:.3g} Hz, {held:.0f} % held out"))
+            rows.append((label, f"{at.size:,} rows, {duration:,.0f} s at {rate:.3g} Hz, {held:.0f} % held out in turn"))
     return rows
