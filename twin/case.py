@@ -15,7 +15,7 @@ from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted, Plant
 from twin.refresh import fresh_rows
-from twin.simulate import start_of
+from twin.simulate import moving_to
 from twin.timegrid import make_grid
 
 #: Travel over compliance, and travel, of the thesis's valve: the units in which effects state their sizes.
@@ -106,7 +106,8 @@ def make_case(
     )
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))
-    trials = tuple(_trial(base, r, b, held) for r, b in zip(recordings, bad, strict=True))
+    pairs = enumerate(zip(recordings, bad, strict=True))
+    trials = tuple(replace(_trial(base, r, b, held), part=(k, len(recordings))) for k, (r, b) in pairs)
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)
@@ -125,8 +126,7 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
 
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    start = start_of(base, recording, make_grid(recording.time_s, step_s))
-    play = start.play if start.play != start.position else None
+    play = moving_to(base, recording, make_grid(recording.time_s, step_s))
     return make_trial(recording, step_s, bad, play, fresh_rows(recording.position) if held else None)
 
 

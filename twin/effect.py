@@ -114,6 +114,7 @@ class Coefficients:
 
     design: DesignModel
     duration_s: float
+    part: tuple[int, int] | None = None  # number of the recording, of how many; None: none of those that were fitted
     ep: FloatArray = field(default_factory=neutral_ep)
     valve: FloatArray = field(default_factory=neutral_valve)
     sensor: FloatArray = field(default_factory=neutral_sensor)
@@ -150,8 +151,9 @@ class Form:
 
     `starts_for(time_s, reading, scales)` gives the values (in record units) that a fit to this record tries first,
     where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
-    recordings, in which it would have had to happen alike. What is `seen` goes by the recorded readings'
-    own refresh, and is a candidate only where that is beyond doubt.
+    recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
+    to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
+    doubt.
     """
 
     name: str
@@ -159,6 +161,7 @@ class Form:
     apply: Apply
     starts_for: StartsFor | None = None
     once: bool = False
+    apart: int = 0
     seen: bool = False
 
 

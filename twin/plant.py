@@ -15,7 +15,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Form
 from twin.kernels.ep import ep_kernel
-from twin.kernels.sensor import sensor_kernel
+from twin.kernels.sensor import sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
 from twin.slots import (
     EP_TAU_FALL_S,
@@ -27,6 +27,8 @@ from twin.slots import (
     S_SWING,
     S_TRAVEL,
     S_ZERO,
+    V_HARD_HIGH,
+    V_HARD_LOW,
     V_HIGH,
     V_LOW,
     V_RATE_CLOSE,
@@ -56,9 +58,9 @@ class Plant:
     design: DesignModel
     inserted: Sequence[Inserted] = field(default_factory=tuple)
 
-    def coefficients(self, duration_s: float) -> Coefficients:
-        """What the kernels need, with all effects written in."""
-        c = Coefficients(self.design, duration_s)
+    def coefficients(self, duration_s: float, part: tuple[int, int] | None = None) -> Coefficients:
+        """What the kernels need, with all effects written in; `part`: see `Coefficients`."""
+        c = Coefficients(self.design, duration_s, part)
         d = self.design
         c.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = d.ep_tau_s
         c.valve[[V_HIGH, V_TRAVEL]] = d.travel
@@ -142,8 +144,13 @@ def effect_tables(inserted: Sequence[Inserted]) -> Mapping[str, Mapping[str, flo
     }
 
 
-def stem_at(c: Coefficients, reading: float) -> float:
-    """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
+def reading_at(c: Coefficients, stem: float) -> float:
+    """What the static sensor reads of a stem position at the start."""
+    return float(static_reading(np.array([stem]), np.zeros(1), c.sensor)[0])
+
+
+def core_at(c: Coefficients, reading: float) -> float:
+    """Where the core stands when the static sensor reads `reading` at the start."""
     s = c.sensor
     x = (reading - s[S_ZERO]) / s[S_GAIN]
     if s[S_BOW] != 0.0 or s[S_SWING] != 0.0:
@@ -151,4 +158,10 @@ def stem_at(c: Coefficients, reading: float) -> float:
             xi = x / s[S_TRAVEL]
             bend = s[S_TRAVEL] * xi * (1.0 - xi) * (4.0 * s[S_BOW] + 10.4 * s[S_SWING] * (1.0 - 2.0 * xi))
             x = (reading - s[S_ZERO]) / s[S_GAIN] - bend
-    return float(min(max(x, c.valve[V_LOW]), c.valve[V_HIGH]))
+    return float(x)
+
+
+def stem_at(c: Coefficients, reading: float) -> float:
+    """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
+    low, high = max(c.valve[V_LOW], c.valve[V_HARD_LOW]), min(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
+    return float(min(max(core_at(c, reading), low), high))

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from control.design import DesignModel
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.insert import inserted_from, plant_of
-from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
+from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
 from twin.refresh import fresh_rows
+from twin.slots import S_CORE
 from twin.timegrid import TimeGrid, make_grid
 
 __all__ = ["Start", "inserted_from", "plant_of", "simulate_recording", "start_of", "step_for"]
@@ -25,11 +28,15 @@ _BETTER = 0.8
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """State before the first row: pressure, stem position, and play output (the target the stem was left with)."""
+    """State before the first row: pressure, stem position, and play output (the target the stem was left with).
+
+    `core`: where the core of a loose linkage stands; not a number: with the stem.
+    """
 
     pressure: float
     position: float
     play: float
+    core: float = float("nan")
 
 
 def step_for(design: DesignModel) -> float:
@@ -57,6 +64,7 @@ def simulate_recording(
     c = plant.coefficients(recording.duration_s)
     pressure = pressure_response(c, grid, recording.command, first.pressure)
     stem = stem_response(c, grid, pressure, first.position, first.play)
+    c.sensor[S_CORE] = first.core
     return pressure[grid.offsets], reading_response(c, grid, stem, fresh_rows(recording.position))
 
 
@@ -72,7 +80,7 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     readings = _seen(recording.position, float(np.clip(middle, 0.0, plant.design.travel)))[:_FIRST_ROWS]
     c = plant.coefficients(recording.duration_s)
     position = stem_at(c, float(np.median(readings)))
-    rest = Start(float(pressure), position, position)
+    rest = Start(float(pressure), position, position, core_at(c, float(np.median(readings))))
     if not np.isfinite(recording.position).any():
         return rest
     stems = [position, stem_at(c, float(readings[0])), stem_at(c, _before(recording))]
@@ -82,7 +90,29 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     head, cut = recording.slice(0, stop), TimeGrid(grid.time_s[:stop], grid.offsets[:stop])
     misses = [_miss(plant, head, cut, one) for one in candidates]
     best = int(np.argmin(misses))
-    return candidates[best] if misses[best] < _BETTER * misses[0] else rest
+    if misses[best] >= _BETTER * misses[0]:
+        return rest
+    return _refined(candidates[best], plays[1], lambda one: _miss(plant, head, cut, one))
+
+
+def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | None:
+    """The reading towards which the valve was moving before the first row, None where it stood still.
+
+    As a reading it holds for any gain and zero of the sensor that a hypothesis may have.
+    """
+    start = start_of(plant, recording, grid)
+    c = plant.coefficients(recording.duration_s)
+    return reading_at(c, start.play) if start.play != start.position else None
+
+
+def _refined(start: Start, within: float, miss: Callable[[Start], float]) -> Start:
+    """The start with the play output, looked for on a coarse grid, where it explains best."""
+    near = (start.play - within, start.play + within)
+    found = minimize_scalar(
+        lambda play: miss(replace(start, play=float(play))), bounds=near, method="bounded", options={"maxiter": 15}
+    )
+    better = replace(start, play=float(found.x))
+    return better if found.fun < miss(start) else start
 
 
 def _seen(values: FloatArray | None, otherwise: float) -> FloatArray:
@@ -105,6 +135,7 @@ def _miss(plant: Plant, head: Recording, grid: TimeGrid, start: Start) -> float:
     """Mean squared difference over the head, without its worst tenth, which may be false readings."""
     c = plant.coefficients(head.duration_s)
     pressure = pressure_response(c, grid, head.command, start.pressure)
+    c.sensor[S_CORE] = start.core
     reading = reading_response(c, grid, stem_response(c, grid, pressure, start.position, start.play))
     seen = np.isfinite(head.position)
     squares = np.sort((head.position[seen] - reading[seen]) ** 2)[: max(1, int(0.9 * np.count_nonzero(seen)))]

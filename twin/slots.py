@@ -84,7 +84,11 @@ S_WANDER_S = 13  # time between the knots of a wandering zero [s]; 0: it does no
 S_KNOTS = 14  # the zero at each of the knots after the start [position]
 KNOTS = 10
 S_SEEN = S_KNOTS + KNOTS  # 1: the reading is refreshed when the recorded one is seen to be
-S_COUNT = S_SEEN + 1
+S_CORE = S_SEEN + 1  # where the core of a loose linkage stands at the start [position]; not a number: at the stem
+S_CYCLE_S = S_CORE + 1  # period of a zero that comes and goes [s]; 0: none
+S_CYCLE_COS = S_CORE + 2  # 1 - cos, and sin, of it [position]
+S_CYCLE_SIN = S_CORE + 3
+S_COUNT = S_CYCLE_SIN + 1
 
 FOREVER = 1e30
 
@@ -118,4 +122,5 @@ def neutral_sensor() -> FloatArray:
     c[S_GAIN] = 1.0
     c[S_DRIFT_TAU_S] = 1.0
     c[S_TRAVEL] = 1.0
+    c[S_CORE] = np.nan
     return c

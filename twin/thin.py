@@ -17,7 +17,7 @@ from logs.recording import DataNote, FloatArray, Recording
 from twin.case import Case, Span, fine_step_s
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
-from twin.simulate import start_of
+from twin.simulate import moving_to
 from twin.stages import StageResult, drive_by_measured
 from twin.timegrid import make_grid
 
@@ -137,9 +137,9 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     thin = thinned(recording, rows)
     false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
-    start = start_of(case.base, thin, make_grid(thin.time_s, step_s))
-    play = start.play if start.play != start.position else None
+    play = moving_to(case.base, thin, make_grid(thin.time_s, step_s))
     trial = make_trial(thin, step_s, false, play, _fresh_of(whole, span, rows), vague)
+    trial = replace(trial, part=whole.part)
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
 
 

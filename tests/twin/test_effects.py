@@ -44,7 +44,13 @@ def excitation() -> tuple[FloatArray, FloatArray]:
 
 
 @cache
-def response(effect_name: str, form: Form | None, values: tuple[float, ...], scales: Scales = REFERENCE) -> FloatArray:
+def response(
+    effect_name: str,
+    form: Form | None,
+    values: tuple[float, ...],
+    scales: Scales = REFERENCE,
+    part: tuple[int, int] | None = None,
+) -> FloatArray:
     """Pressure and reading at the rows, shape (2, 1200)."""
     d = DesignModel()
     design = DesignModel(
@@ -60,7 +66,7 @@ def response(effect_name: str, form: Form | None, values: tuple[float, ...], sca
     time_s, command = excitation()
     time_s, command = time_s * scales.time, command * scales.pressure
     grid = make_grid(time_s, 0.05 * scales.time)
-    c = plant.coefficients(float(time_s[-1]))
+    c = plant.coefficients(float(time_s[-1]), part)
     pressure = pressure_response(c, grid, command, float(command[0]))
     return np.array([pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))])
 
@@ -122,7 +128,8 @@ def test_every_start_changes_the_response(one: Effect, form: Form) -> None:
         for start in p.starts:
             values = typical(form)
             values[k] = start
-            change = response(one.name, form, tuple(values)) - response("", None, ())
+            part = (k // 2, form.apart // 2) if form.apart else None
+            change = response(one.name, form, tuple(values), part=part) - response("", None, ())
             assert np.isfinite(change).all()
             assert (np.abs(change[stage_row]).max() > 1e-6) == (one.name not in WITHOUT_TRAJECTORY), (p.name, start)
     if not form.parameters and not form.seen:  # what is seen in the readings changes nothing where there are none

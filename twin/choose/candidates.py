@@ -20,6 +20,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     An effect of the `base` plant stands trial only if the design's file brought it, and in the file's form: it may have
     changed. What was inserted for the record's sake (a late sample, a reading that rounds down) is settled.
     """
+    records = max((trial.part[1] for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
     refreshed = all(trial.fresh is not None for trial in channel.trials)
     return [
@@ -27,7 +28,9 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
         for effect in effects().values()
         if effect.stage in channel.stages and effect.evidence == "trajectory"
         for form, values in _forms(effect, base)
-        if not (form.once and several) and (refreshed or not form.seen)
+        if not (form.once and several)
+        and (not form.apart or 2 <= records <= form.apart)
+        and (refreshed or not form.seen)
     ]
 
 

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_IN_MOTION, V_OUTER, V_OUTER_CENTRE, V_OUTER_SLOPE
+from twin.slots import (
+    FOREVER,
+    V_HARD_HIGH,
+    V_HARD_LOW,
+    V_HIGH,
+    V_IN_MOTION,
+    V_LOW,
+    V_OUTER,
+    V_OUTER_CENTRE,
+    V_OUTER_SLOPE,
+)
 
 _SHARE = Parameter(
     name="share",
@@ -32,12 +42,34 @@ def _partial(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_OUTER_SLOPE] = 1.0 / d.compliance
 
 
+def _met_at_speed(c: Coefficients) -> None:
+    """Only the stem is held by the stops: forces may balance beyond them, and the stem meets them at speed."""
+    c.valve[V_HARD_LOW], c.valve[V_LOW] = max(c.valve[V_HARD_LOW], c.valve[V_LOW]), -FOREVER
+    c.valve[V_HARD_HIGH], c.valve[V_HIGH] = min(c.valve[V_HARD_HIGH], c.valve[V_HIGH]), FOREVER
+
+
+def _full_hit(c: Coefficients, values: Sequence[float]) -> None:
+    _full(c, values)
+    _met_at_speed(c)
+
+
+def _partial_hit(c: Coefficients, values: Sequence[float]) -> None:
+    _partial(c, values)
+    if values[0] > 0.0:
+        _met_at_speed(c)
+
+
 EFFECT = Effect(
     name="friction_in_motion",
     stage="actuator",
     claim="The stem stops when the pressure reverses instead of coasting to its play target.",
     equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes before",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799",
-    forms=(Form("full", (), _full), Form("partial", (_SHARE,), _partial)),
+    forms=(
+        Form("full", (), _full),
+        Form("partial", (_SHARE,), _partial),
+        Form("full_hit", (), _full_hit),
+        Form("partial_hit", (_SHARE,), _partial_hit),
+    ),
     absorbs=("tau",),
 )

@@ -28,12 +28,12 @@ _ZERO = Parameter(
 
 
 def _both(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_GAIN] = 1.0 + values[0]
+    c.sensor[S_GAIN] *= 1.0 + values[0]
     c.sensor[S_ZERO] += values[1]
 
 
 def _gain(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_GAIN] = 1.0 + values[0]
+    c.sensor[S_GAIN] *= 1.0 + values[0]
 
 
 def _zero(c: Coefficients, values: Sequence[float]) -> None:

@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import KNOTS, S_DRIFT_AMP, S_DRIFT_RATE, S_DRIFT_TAU_S, S_KNOTS, S_WANDER_S
+from twin.slots import (
+    KNOTS,
+    S_CYCLE_COS,
+    S_CYCLE_S,
+    S_CYCLE_SIN,
+    S_DRIFT_AMP,
+    S_DRIFT_RATE,
+    S_DRIFT_TAU_S,
+    S_KNOTS,
+    S_WANDER_S,
+    S_ZERO,
+)
 
 _RATE = Parameter(
     name="rate",
@@ -50,6 +62,23 @@ _ZEROS = tuple(
 )
 
 
+_THERE = replace(_CHANGE, name="there", doc="half of the way that the zero goes and comes back from, per period")
+_ALONG = replace(
+    _CHANGE, name="along", starts=(-0.0005, 0.0005), doc="the rest of the swing, a quarter of a period ahead"
+)
+_PERIOD = Parameter(
+    name="period",
+    kind="time",
+    lower=60.0,
+    upper=3000.0,
+    starts=(120.0, 250.0, 600.0),
+    scale=100.0,
+    doc="period of the cycle",
+    neutral=300.0,
+    size=False,
+)
+
+
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_RATE] = values[0]
 
@@ -57,6 +86,22 @@ def _linear(c: Coefficients, values: Sequence[float]) -> None:
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_AMP] = values[0]
     c.sensor[S_DRIFT_TAU_S] = values[1]
+
+
+def _cycle(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_CYCLE_COS], c.sensor[S_CYCLE_SIN], c.sensor[S_CYCLE_S] = values
+
+
+def _apart(c: Coefficients, values: Sequence[float]) -> None:
+    """Each recording with its own zero, at its start and, as far as the values go round, at its end."""
+    if c.part is None:
+        return  # nobody knows the zero of another recording
+    number, of = c.part
+    if 2 * of <= KNOTS:
+        c.sensor[S_ZERO] += values[2 * number]
+        c.sensor[S_DRIFT_RATE] += (values[2 * number + 1] - values[2 * number]) / max(c.duration_s, 1e-9)
+    else:
+        c.sensor[S_ZERO] += values[number]
 
 
 def _wander(c: Coefficients, values: Sequence[float]) -> None:
@@ -68,11 +113,15 @@ EFFECT = Effect(
     name="lvdt_drift",
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
-    equations="y = x + rate t, or x + change (1 - exp(-t / settling)), or x + a spline through its value at ten times",
+    equations="y = x + rate t, or x + change (1 - exp(-t / settling)), "
+    "or x + there (1 - cos) + along sin (2 pi t / period), or x + a spline through its value at ten times, "
+    "or x + a straight line of each recording's own (apart)",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(
         Form("linear", (_RATE,), _linear),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
+        Form("cycle", (_THERE, _ALONG, _PERIOD), _cycle),
+        Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),
     ),
     drifts=True,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_BOW, S_SWING
+from twin.slots import S_BOW, S_GAIN, S_SWING, S_TRAVEL, S_ZERO
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -24,6 +24,10 @@ _BOW = _parameter("bow", "excess of the reading at mid travel, fraction of trave
 _SWING = _parameter("swing", "amplitude of the S-shaped part, excess at 21 % of travel, fraction of travel")
 
 
+def _bend(end: str) -> Parameter:
+    return _parameter("bend", f"excess of the reading at fully {end}, fraction of travel")
+
+
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_BOW] = values[0]
 
@@ -37,13 +41,42 @@ def _both(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_SWING] = values[1]
 
 
+def _about_open(c: Coefficients, values: Sequence[float]) -> None:
+    """xi^2 is xi less a bow."""
+    _bent(c, gain=values[0], bow=-0.25 * values[0])
+
+
+def _about_closed(c: Coefficients, values: Sequence[float]) -> None:
+    """(1 - xi)^2 is 1 - xi less a bow."""
+    _bent(c, gain=-values[0], bow=-0.25 * values[0], zero=values[0])
+
+
+def _about_mid(c: Coefficients, values: Sequence[float]) -> None:
+    """(2 xi - 1)^3 is 2 xi - 1 and a swing."""
+    _bent(c, gain=2.0 * values[0], swing=values[0] * 4.0 / 10.4, zero=-values[0])
+
+
+def _bent(c: Coefficients, gain: float, bow: float = 0.0, swing: float = 0.0, zero: float = 0.0) -> None:
+    c.sensor[S_BOW], c.sensor[S_SWING] = bow / (1.0 + gain), swing / (1.0 + gain)  # the gain comes behind the curve
+    c.sensor[S_GAIN] *= 1.0 + gain
+    c.sensor[S_ZERO] += zero * c.sensor[S_TRAVEL]
+
+
 EFFECT = Effect(
     name="lvdt_nonlinearity",
     stage="sensor",
     claim="The reading is a curved function of position.",
-    equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel",
+    equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
+    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or (2 xi - 1)^3",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
-    forms=(Form("bow", (_BOW,), _bow), Form("swing", (_SWING,), _swing), Form("bow_and_swing", (_BOW, _SWING), _both)),
+    forms=(
+        Form("bow", (_BOW,), _bow),
+        Form("swing", (_SWING,), _swing),
+        Form("bow_and_swing", (_BOW, _SWING), _both),
+        Form("about_open", (_bend("closed"),), _about_open),
+        Form("about_closed", (_bend("open"),), _about_closed),
+        Form("about_mid", (_bend("closed"),), _about_mid),
+    ),
     twins=("nonlinear_spring", "flow_force"),
     absorbs=("compliance", "offset"),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -44,6 +45,21 @@ def _stem_slope(c: Coefficients, values: Sequence[float]) -> None:
     c.bend_at_stem(nothing, nothing, 1.0 + values[0] * (c.xi - 0.5))
 
 
+def _area(c: Coefficients, share: np.ndarray) -> None:
+    """Where the diaphragm's area is larger by `share`, every pressure pulls more: spring and friction alike."""
+    spring = c.xi * c.design.travel / c.design.compliance
+    c.close_shift += (c.design.a1 + spring) * (1.0 / (1.0 + share) - 1.0)
+    c.open_shift += (c.design.a2 + spring) * (1.0 / (1.0 + share) - 1.0)
+
+
+def _area_slope(c: Coefficients, values: Sequence[float]) -> None:
+    _area(c, values[0] * (c.xi - 0.5))
+
+
+def _area_bow(c: Coefficients, values: Sequence[float]) -> None:
+    _area(c, values[0] * 4.0 * c.xi * (1.0 - c.xi))
+
+
 _BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
 _SWING = _parameter("swing", "amplitude of the S-shaped part: extra pressure at 21 % of travel, less at 79 %")
 
@@ -57,18 +73,32 @@ _SLOPE = Parameter(
     doc="change of the compliance from fully open to fully closed, as a share of that at mid travel",
 )
 
+_AREA = Parameter(
+    name="area",
+    kind="fraction",
+    lower=-0.3,
+    upper=0.3,
+    starts=(-0.01, 0.01),
+    scale=0.03,
+    doc="change of the effective area from fully open to fully closed, as a share",
+)
+_AREA_MID = replace(_AREA, doc="excess of the effective area at mid travel, as a share")
+
 EFFECT = Effect(
     name="nonlinear_spring",
     stage="actuator",
     claim="Compliance depends on position.",
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
-    "stem_bow: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2))",
+    "stem_bow: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
+    "area_*: p (1 + area (xi - 1/2)), or p (1 + area 4 xi (1 - xi)), in place of p",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
         Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing),
         Form("stem_bow", (_BOW,), _stem_bow),
         Form("stem_slope", (_SLOPE,), _stem_slope),
+        Form("area_slope", (_AREA,), _area_slope),
+        Form("area_bow", (_AREA_MID,), _area_bow),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),

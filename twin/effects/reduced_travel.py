@@ -23,11 +23,11 @@ def _missing(doc: str) -> tuple[Parameter]:
 
 
 def _upper(c: Coefficients, values: Sequence[float]) -> None:
-    c.valve[V_HIGH] -= values[0] * c.design.travel
+    c.valve[[V_HIGH, V_HARD_HIGH]] -= values[0] * c.design.travel
 
 
 def _lower(c: Coefficients, values: Sequence[float]) -> None:
-    c.valve[V_LOW] += values[0] * c.design.travel
+    c.valve[[V_LOW, V_HARD_LOW]] += values[0] * c.design.travel
 
 
 def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:

@@ -14,7 +14,8 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.fit.trial import Trial, concatenate
-from twin.plant import Plant, pressure_response, reading_response, stem_at, stem_response
+from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
+from twin.slots import S_CORE
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -26,7 +27,7 @@ def predict_pressure(plant: Plant, trial: Trial) -> FloatArray:
 
 def pressure_fine(plant: Plant, trial: Trial) -> FloatArray:
     """Pressure on the fine grid from the command."""
-    c = plant.coefficients(trial.recording.duration_s)
+    c = plant.coefficients(trial.recording.duration_s, trial.part)
     return pressure_response(c, trial.grid, trial.recording.command, trial.start_pressure)
 
 
@@ -43,9 +44,9 @@ def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
 
 
 def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
-    c = plant.coefficients(trial.recording.duration_s)
-    start = stem_at(c, trial.start_position)
-    play = start if trial.start_play is None else trial.start_play
+    c = plant.coefficients(trial.recording.duration_s, trial.part)
+    start, c.sensor[S_CORE] = stem_at(c, trial.start_position), core_at(c, trial.start_position)
+    play = start if trial.start_play is None else stem_at(c, trial.start_play)
     return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play), trial.fresh)
 
 

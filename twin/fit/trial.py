@@ -25,9 +25,10 @@ class Trial:
     Of those that do not, `false` are false readings of the position, and `vague` rows behind a step of the command at a
     time that nobody knows.
 
-    `start_play` is the play output at the start where the valve was moving, None where it stood with the stem.
+    `start_play` is the reading towards which the valve was moving at the start, None where it stood still.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh` (int, shape (n,)) is the row in which each row's reading was new, where readings are seen to be held.
+    `part`: the number of the recording, and of how many, in the case.
     """
 
     recording: Recording
@@ -41,6 +42,7 @@ class Trial:
     vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
     fresh: npt.NDArray[np.intp] | None = None
+    part: tuple[int, int] = (0, 1)
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""

@@ -75,6 +75,46 @@ def _bent_play(
         out[f] += weight * e
 
 
+@njit(cache=True, nogil=True, error_model="numpy")
+def _mean_at(v: float, bottom: FloatArray, top: FloatArray, weights: FloatArray) -> float:
+    """Output of elements that all stand as near to `v` as their bounds allow."""
+    total = 0.0
+    for j in range(weights.size):
+        total += weights[j] * max(bottom[j], min(top[j], v))
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def common_start(
+    force: float,
+    widening: float,
+    stops: tuple[float, float],
+    tables: tuple[float, float, FloatArray, FloatArray],
+    spreads: FloatArray,
+    weights: FloatArray,
+    w0: float,
+) -> float:
+    """Where all elements have to stand, as far as the pressure lets each, for their output to be `w0`.
+
+    At rest narrow elements are at their bounds and wide ones are not: the same place for all would move the stem.
+    """
+    if spreads.size < 2:
+        return w0
+    bottom, top = np.empty(spreads.size), np.empty(spreads.size)
+    for j in range(spreads.size):
+        band = spreads[j] + widening
+        bottom[j] = max(stops[0], min(stops[1], _look_up(force - band, tables[0], tables[1], tables[2])))
+        top[j] = max(stops[0], min(stops[1], _look_up(force + band, tables[0], tables[1], tables[3])))
+    low, high = min(bottom.min(), w0), max(top.max(), w0)
+    for _ in range(50):
+        v = 0.5 * (low + high)
+        if _mean_at(v, bottom, top, weights) < w0:
+            low = v
+        else:
+            high = v
+    return float(0.5 * (low + high))
+
+
 def play_target(
     force: FloatArray,
     widening: FloatArray,

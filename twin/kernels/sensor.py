@@ -15,6 +15,10 @@ from twin.kernels.play import plain_play
 from twin.slots import (
     KNOTS,
     S_BOW,
+    S_CORE,
+    S_CYCLE_COS,
+    S_CYCLE_S,
+    S_CYCLE_SIN,
     S_DRIFT_AMP,
     S_DRIFT_RATE,
     S_DRIFT_TAU_S,
@@ -37,19 +41,19 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
     core = stem
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
-        plain_play(stem, 0.5 * c[S_PLAY], stem[0], core)
+        plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
     if c[S_LAG_S] > 0.0:
         t = elapsed_s(time_s, offsets)
-        out[:] = lagged(time_s, offsets, _curve(core, t, c), c[S_LAG_S])[offsets]
+        out[:] = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])[offsets]
     else:
-        out[:] = _curve(core[offsets], time_s - time_s[0], c)
+        out[:] = static_reading(core[offsets], time_s - time_s[0], c)
     if c[S_HOLD_S] > 0.0:
         _refresh(time_s, c, out)
     if c[S_STEP] > 0.0:
         out[:] = np.round(out / c[S_STEP]) * c[S_STEP]
 
 
-def _curve(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
+def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
     """Static curve of the reading plus its drifting zero [position]; `t` in s since the first row."""
     y = x
     if c[S_BOW] != 0.0 or c[S_SWING] != 0.0:
@@ -61,6 +65,9 @@ def _curve(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
         y = y + c[S_DRIFT_RATE] * t
     if c[S_DRIFT_AMP] != 0.0:
         y = y - c[S_DRIFT_AMP] * np.expm1(-t / c[S_DRIFT_TAU_S])
+    if c[S_CYCLE_S] > 0.0:
+        phase = 2.0 * np.pi / c[S_CYCLE_S] * t
+        y = y + c[S_CYCLE_COS] * (1.0 - np.cos(phase)) + c[S_CYCLE_SIN] * np.sin(phase)
     if c[S_WANDER_S] > 0.0:
         y = y + _wandering(t, c)
     return y

@@ -11,7 +11,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.kernels.coupled import Bends, Plays, Tables, coupled_start, coupled_steps
 from twin.kernels.lag import elapsed_s, lagged
-from twin.kernels.play import plain_play, play_target
+from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.slots import (
     V_BREAKAWAY,
@@ -91,13 +91,14 @@ def _stem(
 ) -> None:
     """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
     low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
+    at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
     if couples(c, bends):
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
         what = (c, stops, tables, plays, bends)
-        state, elements = coupled_start(float(force[0]), float(widening[0]), *what, start)
+        state, elements = coupled_start(float(force[0]), float(widening[0]), *what, (start[0], at))
         coupled_steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
-        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
+        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, at)
         if c[V_TARGET_CREEPS] != 0.0:
             _creep(time_s, offsets, c, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])

@@ -2,26 +2,33 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.play import plain_play
-from twin.kernels.sensor import _curve
+from twin.kernels.sensor import static_reading
 from twin.live.lag import Lag
 from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG_S, S_PLAY, S_STEP
 
 
 class Sensor:
-    """Stem in, reading out. The first row's time is `origin_s`, its stem `x0`."""
+    """Stem in, reading out. The first row's time is `origin_s`, its stem `x0`.
 
-    def __init__(self, c: FloatArray, origin_s: float, x0: float) -> None:
+    `core`: where the core of a loose linkage stands; not a number: with the stem.
+    """
+
+    def __init__(self, c: FloatArray, origin_s: float, x0: float, core: float = math.nan) -> None:
         self._c = c
         self._origin_s = origin_s
-        self._core = x0
+        half = 0.5 * float(c[S_PLAY])
+        self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
         self._lag = Lag(float(c[S_LAG_S]))
-        self._rows: deque[tuple[float, float]] = deque([(0.0, float(self._static(np.array([x0]), np.zeros(1))[0]))])
+        self._rows: deque[tuple[float, float]] = deque(
+            [(0.0, float(self._static(np.array([self._core]), np.zeros(1))[0]))]
+        )
 
     @property
     def first(self) -> float:
@@ -46,7 +53,7 @@ class Sensor:
         return self._rounded(value)
 
     def _static(self, stem: FloatArray, t: FloatArray) -> FloatArray:
-        return _curve(stem, t, self._c)
+        return static_reading(stem, t, self._c)
 
     def _refreshed(self, t: float, value: float) -> float:
         """The value of the last refresh instant; rows before it are forgotten."""

@@ -7,6 +7,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels.coupled import coupled_start, coupled_steps
+from twin.kernels.play import common_start
 from twin.plant import curve_tables
 from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
 
@@ -26,7 +27,10 @@ class Stuck:
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
         if self._kept is None:
-            self._kept = coupled_start(float(force[0]), float(widening[0]), *self._what, self._start)
+            f, wide = float(force[0]), float(widening[0])
+            _, stops, tables, plays, _ = self._what
+            at = common_start(f, wide, (float(stops[0]), float(stops[1])), tables, *plays, self._start[1])
+            self._kept = coupled_start(f, wide, *self._what, (self._start[0], at))
         out = np.empty(force.size)
         coupled_steps(time_s, offsets, force, widening, *self._what, *self._kept, out)
         return out

@@ -13,7 +13,7 @@ import numpy as np
 from twin.live.converter import Converter
 from twin.live.sensor import Sensor
 from twin.live.valve import Valve
-from twin.plant import Plant, stem_at
+from twin.plant import Plant, core_at, stem_at
 from twin.simulate import Start, step_for
 from twin.slots import S_SEEN, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
 
@@ -36,7 +36,7 @@ class LiveTwin:
         self._converter = Converter(c.ep, time_s, command, start.pressure)
         self._valve = Valve(c, time_s, start.position, start.play)
         low, high = max(c.valve[V_LOW], c.valve[V_HARD_LOW]), min(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
-        self._sensor = Sensor(c.sensor, time_s, float(min(max(start.position, low), high)))
+        self._sensor = Sensor(c.sensor, time_s, float(min(max(start.position, low), high)), start.core)
         self.pressure = start.pressure
         self.position = self._sensor.first
 
@@ -45,9 +45,10 @@ class LiveTwin:
         cls, plant: Plant, time_s: float, command: float, reading: float, pressure: float | None, duration_s: float
     ) -> LiveTwin:
         """The model at rest where the first readings show the valve; without a pressure, at the command."""
-        stem = stem_at(plant.coefficients(duration_s), reading)
+        c = plant.coefficients(duration_s)
+        stem = stem_at(c, reading)
         known = command if pressure is None or not math.isfinite(pressure) else pressure
-        return cls(plant, time_s, command, Start(known, stem, stem), duration_s)
+        return cls(plant, time_s, command, Start(known, stem, stem, core_at(c, reading)), duration_s)
 
     def step(self, time_s: float, command: float, fresh: bool = True) -> tuple[float, float]:
         """Pressure and reading predicted at `time_s`; `command` was in force since the row before.

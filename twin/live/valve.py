@@ -9,7 +9,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels import valve as kernels
-from twin.kernels.play import plain_play, play_target
+from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.stem import stem_pass
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
@@ -115,7 +115,8 @@ class Sliding:
         v = c.valve
         self._tables = curve_tables(c)
         self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
-        self._elements = [w0] * c.spreads.size
+        self._plays, self._w0 = (c.spreads, c.weights), w0
+        self._elements: list[float] = []
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
         self._tails = Tails(c if v[V_TARGET_CREEPS] != 0.0 else None)
         self._after = Lag(float(v[V_TAU_AFTER_S]))
@@ -125,6 +126,9 @@ class Sliding:
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
+        if not self._elements:
+            first = (float(force[0]), float(widening[0]), self._stops, self._tables, *self._plays, self._w0)
+            self._elements = [common_start(*first)] * len(self._shares)
         target = np.zeros(force.size)
         for k, (spread, weight) in enumerate(self._shares):
             one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])

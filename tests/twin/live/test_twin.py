@@ -52,6 +52,17 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     assert np.ptp(position) > 0.1
 
 
+@pytest.mark.parametrize("core", [0.09, 0.097, 0.2])
+def test_a_loose_linkage_begins_where_it_was_read(core: float) -> None:
+    loose = Inserted("linkage_lost_motion", effects()["linkage_lost_motion"].form("play"), (0.012,))
+    plant = Plant(DesignModel(), (loose,))
+    record, start = jagged_record(), Start(7.0, 0.1, 0.12, core)
+    _, position = live(plant, record, start)
+    _, whole = simulate_recording(plant, record, start=start)
+    assert np.max(np.abs(position - whole)) < 1e-9
+    assert position[0] == pytest.approx(min(max(core, 0.094), 0.106))
+
+
 def test_equals_the_simulation_with_everything_at_once() -> None:
     names = [
         ("dead_time", "pure_delay"),

@@ -1,0 +1,79 @@
+"""Forms whose equations are said in other terms than their coefficients."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from tests.twin.test_kernels import excitation, run
+from twin.catalog import effect
+from twin.kernels.sensor import static_reading
+from twin.plant import Inserted, Plant, curve_tables
+
+DESIGN = DesignModel()
+
+
+def plant_with(*effects: tuple[str, str, tuple[float, ...]]) -> Plant:
+    return Plant(DESIGN, tuple(Inserted(name, effect(name).form(form), values) for name, form, values in effects))
+
+
+@given(st.sampled_from(["about_open", "about_closed", "about_mid"]), st.floats(-0.2, 0.2), st.floats(0.0, 1.0))
+def test_a_reading_bent_about_a_place_is_right_there(form: str, bend: float, xi: float) -> None:
+    c = plant_with(("lvdt_nonlinearity", form, (bend,))).coefficients(1.0).sensor
+    shape = {"about_open": xi**2, "about_closed": (1.0 - xi) ** 2, "about_mid": (2.0 * xi - 1.0) ** 3}[form]
+    read = static_reading(np.array([xi * DESIGN.travel]), np.zeros(1), c)[0]
+    assert read == pytest.approx(DESIGN.travel * (xi + bend * shape), abs=1e-12)
+
+
+def test_a_bent_reading_and_one_off_in_its_gain_add_up_in_any_order() -> None:
+    bent, gain = ("lvdt_nonlinearity", "about_open", (0.05,)), ("lvdt_calibration", "gain", (0.03,))
+    one, other = (plant_with(*order).coefficients(1.0).sensor for order in ((bent, gain), (gain, bent)))
+    np.testing.assert_allclose(one, other)
+
+
+@pytest.mark.parametrize(
+    ("form", "share"), [("area_slope", lambda xi: xi - 0.5), ("area_bow", lambda xi: 4 * xi * (1 - xi))]
+)
+def test_a_larger_area_needs_less_pressure_for_spring_and_friction_alike(form: str, share: object) -> None:
+    assert callable(share)
+    first, step, closing, opening = curve_tables(plant_with(("nonlinear_spring", form, (0.05,))).coefficients(1.0))
+    grid = first + step * np.arange(closing.size)
+    for start_psi, table in ((DESIGN.a1, closing), (DESIGN.a2, opening)):
+        for xi in (0.1, 0.5, 0.9):
+            needed = (start_psi + xi * DESIGN.travel / DESIGN.compliance) / (1.0 + 0.05 * share(xi))
+            assert np.interp(needed, grid, table) == pytest.approx(xi * DESIGN.travel, abs=2e-4)
+
+
+def stem_to_closed(form: str) -> FloatArray:
+    time_s = np.arange(600) * 0.05
+    command = np.where(time_s < 1.0, 4.0, 13.5)
+    return run(plant_with(("friction_in_motion", form, ())), time_s, command, 0.01, 0.0)[1]
+
+
+def test_a_balance_beyond_the_stop_brings_the_stem_there_at_speed() -> None:
+    soft = stem_to_closed("full")
+    hit = stem_to_closed("full_hit")
+    assert hit.max() == DESIGN.travel > soft.max()
+    arrival = int(np.argmax(hit == DESIGN.travel))
+    assert (hit[arrival] - hit[arrival - 1]) / 0.05 > 0.02  # in/s: no creeping up to the stop
+    assert soft[arrival] < 0.97 * DESIGN.travel
+
+
+@pytest.mark.parametrize("stop", ["upper_stop", "lower_stop", "upper_stop_hit", "lower_stop_hit"])
+@pytest.mark.parametrize("friction", ["full_hit", "partial_hit"])
+def test_a_stop_that_moved_moves_for_a_stem_that_meets_it_at_speed(stop: str, friction: str) -> None:
+    moved = ("reduced_travel", stop, (0.1,))
+    met = ("friction_in_motion", friction, (0.7,) if "partial" in friction else ())
+    time_s, command = excitation(0.1)
+    one, other = (run(plant_with(*order), time_s, command, 0.02)[1] for order in ((moved, met), (met, moved)))
+    if not stop.endswith("_hit"):
+        np.testing.assert_array_equal(one, other)
+    low, high = (0.1, 1.0) if stop.startswith("lower") else (0.0, 0.9)
+    for reading in (one, other):
+        assert reading[50:].min() >= low * DESIGN.travel - 1e-12
+        assert reading.max() <= high * DESIGN.travel + 1e-12
+        assert min(abs(reading[50:].min() / DESIGN.travel - low), abs(reading.max() / DESIGN.travel - high)) < 1e-9

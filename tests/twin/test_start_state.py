@@ -1,0 +1,102 @@
+"""What a recording does not say of the time before it: where plays and the core stand, where the stem is going."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from logs.recording import Recording
+from twin.catalog import effect
+from twin.fit.channel import predict_reading
+from twin.fit.trial import make_trial
+from twin.kernels.play import common_start
+from twin.plant import Inserted, Plant
+from twin.simulate import Start, moving_to, simulate_recording
+from twin.timegrid import make_grid
+
+DESIGN = DesignModel()
+LINES = (0.0, 1.0, DESIGN.compliance * (np.arange(2.0) - DESIGN.a1), DESIGN.compliance * (np.arange(2.0) - DESIGN.a2))
+STOPS = (0.0, DESIGN.travel)
+
+
+def inserted(name: str, form: str, *values: float) -> Inserted:
+    return Inserted(name, effect(name).form(form), values)
+
+
+def recorded(plant: Plant, command: np.ndarray) -> Recording:
+    """What the plant reads, from open, with no noise."""
+    time_s = np.arange(command.size) * 0.1
+    blank = Recording("made", time_s, command, np.zeros(command.size))
+    pressure, position = simulate_recording(plant, blank, start=Start(command[0], 0.0, 0.0))
+    return replace(blank, pressure=pressure, position=position)
+
+
+@settings(deadline=None)  # the first call compiles
+@given(
+    st.lists(st.floats(0.0, 1.4), min_size=2, max_size=12),
+    st.floats(4.0, 13.0),
+    st.floats(0.0, 1.0),
+    st.floats(-0.3, 0.3),
+)
+def test_elements_at_one_place_put_out_what_is_asked_where_the_pressure_lets_them(
+    widths: list[float], force: float, share: float, wider: float
+) -> None:
+    spreads = np.array(widths) - np.mean(widths)
+    weights = np.full(spreads.size, 1.0 / spreads.size)
+    bounds = [
+        np.clip(DESIGN.compliance * (force + sign * (spreads + wider) - a), *STOPS)
+        for sign, a in ((-1.0, DESIGN.a1), (1.0, DESIGN.a2))
+    ]
+    bottom, top = np.minimum(*bounds), np.maximum(*bounds)  # a width below nothing would turn them round
+    asked = float(weights @ (bottom + share * (top - bottom)))
+    if np.any(bounds[0] > bounds[1]):
+        return
+    at = common_start(force, wider, STOPS, LINES, spreads, weights, asked)
+    assert weights @ np.clip(at, bottom, top) == pytest.approx(asked, abs=1e-9)
+
+
+def test_one_play_stays_where_it_is_said_to_be() -> None:
+    assert common_start(9.0, 0.0, STOPS, LINES, np.zeros(1), np.ones(1), 0.3) == 0.3
+
+
+@pytest.mark.parametrize("beside", [(), (inserted("friction_in_motion", "full"),)])
+def test_a_spread_of_plays_at_rest_stays_at_rest(beside: tuple[Inserted, ...]) -> None:
+    """A record that begins after an inner reversal: narrow plays are at their bounds, wide ones are not."""
+    plant = Plant(DESIGN, (inserted("distributed_hysteresis", "uniform", 0.9), *beside))
+    command = np.concatenate([np.full(600, 11.0), np.full(600, 9.0), np.full(300, 8.9), np.full(300, 7.0)])
+    whole = recorded(plant, command)
+    part = whole.slice(1100, 1800)
+    _, position = simulate_recording(plant, part)
+    assert np.abs(position - part.position)[:90].max() < 2e-4
+    assert np.abs(position - part.position).max() < 0.03 * DESIGN.travel  # what wide ones remember is lost
+    assert np.ptp(part.position) > 0.1 * DESIGN.travel
+
+
+def test_the_core_of_a_loose_linkage_starts_where_it_is_read() -> None:
+    """At a stop inside the travel the core may stand beyond it, on the far side of the play."""
+    loose, stop = inserted("linkage_lost_motion", "play", 0.012), inserted("reduced_travel", "lower_stop", 0.03)
+    plant = Plant(DESIGN, (stop, loose))
+    record = recorded(plant, np.concatenate([np.full(200, 5.0), np.full(300, 11.0)]))
+    stem_in = 0.03 * DESIGN.travel
+    seen = replace(record, position=np.where(record.time_s < 20.0, stem_in - 0.005, record.position))
+    trial = make_trial(seen, 0.02)
+    for position in (simulate_recording(plant, seen)[1], predict_reading(plant, trial)):
+        assert position[0] == pytest.approx(stem_in - 0.005, abs=1e-6)
+        assert position[-1] == pytest.approx(record.position[-1], abs=1e-4)
+    far = replace(record, position=np.where(record.time_s < 20.0, stem_in - 0.05, record.position))
+    assert simulate_recording(plant, far)[1][0] == pytest.approx(stem_in - 0.006, abs=1e-6)
+
+
+def test_where_a_valve_was_going_is_known_as_a_reading() -> None:
+    """With a sensor that reads a tenth too much the stem goes a tenth less far."""
+    plant = Plant(DESIGN, (inserted("lvdt_calibration", "gain", 0.1),))
+    record = recorded(plant, np.concatenate([np.full(400, 11.2), np.full(30, 4.0), np.full(400, 8.0)]))
+    part = record.slice(445, 830)  # coasting in the middle of the deadband, to where no pressure says
+    trial = make_trial(part, 0.02, start_play=moving_to(Plant(DESIGN), part, make_grid(part.time_s, 0.02)))
+    assert trial.start_play == pytest.approx(part.position[-1], abs=0.004 * DESIGN.travel)
+    assert np.abs(predict_reading(plant, trial) - part.position).max() < 0.006 * DESIGN.travel
