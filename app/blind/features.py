@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from twin.choose.decide import Decision
-    from twin.choose.search import Findings
+    from twin.choose.findings import Findings
     from twin.diagnose import Outcome
     from twin.fit.fitting import Fit
 

@@ -18,7 +18,7 @@ from twin.choose.trim import dropped, trimmed
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause as Named
 from twin.effect import Scales
-from twin.fit.space import Cause
+from twin.fit.space import Cause, make_space
 from twin.gap import GapParts, idle_cause
 from twin.plant import Inserted, Plant
 from twin.stages import StageResult
@@ -134,9 +134,22 @@ def test_several_numbers_are_no_plainer_than_an_effect_with_the_better_evidence(
     findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
     two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
     lag = replace(two.space, causes=effect_causes(findings.channel)[:1])
-    effect_of_the_same_error = replace(two, space=lag, prior=prior)
+    effect_of_the_same_error = replace(two, space=lag, prior=prior, z=np.zeros_like(two.z))
     found = plainer(replace(findings, fits=(two, effect_of_the_same_error)), effect_of_the_same_error, rules)
     assert (found is two) is plain
+
+
+def test_an_effect_that_spares_the_numbers_nothing_and_explains_no_more_is_no_cause() -> None:
+    findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
+    two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
+    lag = effect_causes(findings.channel)[0]
+    space = make_space(findings.retuned.space.base, (lag,), findings.retuned.space.numbers, Scales())
+    room = np.zeros(len(space.unknowns) - len(space.numbers))
+    idle = replace(findings.retuned, space=space, z=np.concatenate([findings.retuned.z, room]), mse=two.mse)
+    better = replace(findings, fits=(replace(two, prior=1e3), idle))  # by the evidence alone the effect would win
+    assert plainer(better, idle, rules).names == two.names
+    works = replace(idle, mse=two.mse - 1.0)
+    assert plainer(replace(better, fits=(better.fits[0], works)), works, rules) is works
 
 
 def test_where_one_number_is_wrong_a_further_one_is_ten_times_as_rare() -> None:

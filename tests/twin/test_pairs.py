@@ -15,11 +15,12 @@ from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import DecisionRules, decide
 from twin.choose.pairs import _gains, promising_pairs
+from twin.choose.reform import in_other_forms
 from twin.choose.screen import make_screen
 from twin.choose.search import Searcher, SearchRules
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
-from twin.fit.fitting import fit
+from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
 
@@ -51,6 +52,40 @@ def test_the_pair_that_is_there_is_among_the_first_and_alone_fits() -> None:
     assert len(found) == 10
     fits = [fit(channel, pair.space, [pair.start]) for pair in found[:3]]
     assert [set(f.names) for f in fits if f.mse < 1.2] == [{"lvdt_nonlinearity", "friction_drift"}]
+
+
+def test_pairs_are_tried_in_the_forms_that_did_not_do_best_alone() -> None:
+    def alone(one: Cause, mse: float) -> Fit:
+        space = make_space(Plant(DESIGN), (one,), (), Scales())
+        return Fit(space, np.zeros(len(space.unknowns)), mse, 0.0, np.zeros(1), np.zeros((1, 1)), 1)
+
+    play, one_sided = cause("linkage_lost_motion", "play"), cause("linkage_lost_motion", "one_sided")
+    stops = [cause("reduced_travel", f.name) for f in effect("reduced_travel").forms]
+    tried = [alone(c, 9.0) for c in (play, one_sided, *stops)]
+    best = alone(one_sided, 3.0)
+    both = replace(best, space=make_space(Plant(DESIGN), (one_sided, stops[0]), (), Scales()))
+    number = replace(best, space=make_space(Plant(DESIGN), (one_sided, Cause("parameter:tau")), ("tau",), Scales()))
+    found = in_other_forms([both, number], tried, 6)
+    assert [one.space.causes for one, _ in found] == [(play,), (one_sided,)]
+    assert [{c[1].form.name for c in todo if c[1].form} for _, todo in found] == [
+        {f.name for f in effect("reduced_travel").forms},
+        {f.name for f in effect("reduced_travel").forms[1:]},
+    ]
+    assert in_other_forms([both, number], tried, 0) == []
+
+
+def test_a_pair_is_found_of_which_neither_form_did_best_beside_the_other_ones_best() -> None:
+    stop = Inserted("reduced_travel", effect("reduced_travel").form("lower_stop"), (0.0275,))
+    loose = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.0118,))
+    strokes = np.repeat(np.random.default_rng(1).uniform(4.0, 13.0, 16), 250)
+    channel = position_channel([trial_of(Plant(DESIGN, (stop, loose)), strokes)[0]], SIGMA)
+    rules = SearchRules(threads=2, most=2, paired=0)
+    left = []
+    for reformed in (6, 0):
+        found = Searcher(channel, Plant(DesignModel()), Scales(), replace(rules, reformed=reformed)).run().fits
+        left.append(min(f.mse for f in found if set(f.names) == {"reduced_travel", "linkage_lost_motion"}))
+    print(left)
+    assert left[0] < 1.1 and left[1] > 1.5
 
 
 @given(st.integers(0, 10_000))

@@ -139,6 +139,19 @@ def test_sizes_that_are_unsure_one_by_one_may_be_sure_together() -> None:
         assert hollow(found, 1.0) is empty
 
 
+def test_a_size_is_not_unsure_because_its_time_constant_is() -> None:
+    """Early in a warm-up only change over settling is known: how large either is, nobody can say."""
+    form = effect("friction_drift").form("warm_up")
+    cause = Cause("friction_drift", effect("friction_drift"), form)
+    space = make_space(Plant(DesignModel()), (cause,), (), Scales())
+    slope = np.array([1.0, -0.5]) / np.hypot(1.0, 0.5)
+    normal = 1e4 * np.outer(slope, slope) + 1e-4 * np.eye(2)
+    for size, empty in ((0.3, False), (0.003, True)):
+        found = Fit(space, np.array([size, 2.0]), 1.0, 0.0, np.zeros(1), normal, 1)
+        assert found.deviations()[0] > abs(space.unknowns[0].unit) * size  # with the time constant unknown
+        assert hollow(found, 1.0) is empty
+
+
 def test_an_effect_without_a_size_is_hollow() -> None:
     form = effect("spring_asymmetry").form("hinged_open")
     cause = Cause("spring_asymmetry", effect("spring_asymmetry"), form)

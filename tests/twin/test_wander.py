@@ -12,8 +12,8 @@ from logs.recording import Recording
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
 from twin.choose.decide import DecisionRules, decide
+from twin.choose.findings import Findings
 from twin.choose.score import make_yardstick
-from twin.choose.search import Findings
 from twin.diagnose import diagnose
 from twin.fit.channel import pressure_channel
 from twin.fit.fitting import fit

@@ -36,8 +36,8 @@ def hollow(fit: Fit, phi: float) -> bool:
     """
     if not any(c.form is not None for c in fit.space.causes):
         return False
-    covariance = phi * max(fit.mse, 1.0) * fit.covariance()
-    at = len(fit.space.numbers)
+    at, shapes = len(fit.space.numbers), _shapes(fit)
+    covariance = phi * max(fit.mse, 1.0) * fit.covariance(without=shapes)
     for cause in fit.space.causes:
         parameters = cause.form.parameters if cause.form is not None else ()
         sizes = [(at + k, p.smooth) for k, p in enumerate(parameters) if p.size]
@@ -46,6 +46,12 @@ def hollow(fit: Fit, phi: float) -> bool:
         if sizes and all(smooth for _, smooth in sizes) and _is_nothing(fit, covariance, [k for k, _ in sizes]):
             return True
     return False
+
+
+def _shapes(fit: Fit) -> list[int]:
+    """The unknowns that are no sizes: where there is no effect nobody can know its time constant, nor has to."""
+    causes = [c.form.parameters for c in fit.space.causes if c.form is not None]
+    return [len(fit.space.numbers) + k for k, p in enumerate([p for some in causes for p in some]) if not p.size]
 
 
 def _is_nothing(fit: Fit, covariance: FloatArray, which: list[int]) -> bool:

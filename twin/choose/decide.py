@@ -10,9 +10,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from twin.choose.claims import size_of
-from twin.choose.search import Findings
+from twin.choose.findings import Findings
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
+
+#: Share of the squared moves of the design numbers in re-tuning that an idle effect does not spare them.
+_SPARED = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,20 +98,33 @@ def rest_of(findings: Findings, fit: Fit, floor: float) -> float:
 def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins.
 
-    Several numbers are no plainer than one effect: they have to have the better evidence too.
+    Several numbers are no plainer than one effect: they have to have the better evidence too, unless the effect is
+    idle beside the numbers that it brings along.
     """
     if size_of(fit) > 1:
         return fit
     slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= fit.mse + slack]
-    near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
+    if not _idle(findings.retuned, fit, slack):
+        near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
         return fit
     least = min(near, key=lambda f: (len(f.names), -findings.score(f)))
     # a further number has to be worth as much as any further cause
     fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
     return min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
+
+
+def _idle(retuned: Fit, fit: Fit, slack: float) -> bool:
+    """Whether the effects of `fit` explain no more than re-tuning does, and spare the numbers nothing by it."""
+    return retuned.mse <= fit.mse + slack and _moved(fit) >= _SPARED * _moved(retuned)
+
+
+def _moved(fit: Fit) -> float:
+    """How far the design numbers moved: relative to themselves, squared."""
+    z = fit.z[: len(fit.space.numbers)]
+    return float(z @ z)
 
 
 def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:

@@ -13,9 +13,11 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from twin.choose.candidates import effect_causes, number_causes
-from twin.choose.claims import best_forms, hollow, same_claim, size_of, some_of_each, suspected, together
+from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
+from twin.choose.findings import Findings
 from twin.choose.pairs import promising_pairs
-from twin.choose.score import Yardstick, make_yardstick
+from twin.choose.reform import exactly, in_other_forms
+from twin.choose.score import make_yardstick
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
 from twin.effect import Scales
@@ -39,41 +41,14 @@ class SearchRules:
     paired: int = 6  # pairs that get a full fit because their moves add up well, from each point that is looked from
     screened: int = 5  # further causes per hypothesis of the beam that get a full fit,
     forms: int = 3  # each in so many forms at the most
+    reformed: int = 6  # pairs whose members are tried in their other forms,
+    reform_share: float = 0.002  # where the likeliest pair leaves more than this share of what the design leaves,
+    bent: float = 4.0  # or moves its unknowns by more than this against their priors (squares of their deviations)
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Findings:
-    """All hypotheses fitted on a channel, and what they are measured with."""
-
-    channel: Channel
-    none: Fit
-    retuned: Fit
-    fits: tuple[Fit, ...]
-    yardstick: Yardstick
-
-    @property
-    def phi(self) -> float:
-        """Residual samples of the best hypothesis that are worth one independent one."""
-        return self.yardstick.phi
-
-    def score(self, fit: Fit) -> float:
-        """Tempered log-evidence of one of the hypotheses."""
-        return self.yardstick.score(fit)
-
-    def scored(self) -> list[tuple[float, Fit]]:
-        """All hypotheses with their scores, best first; `none` is among them."""
-        pairs = [(self.score(f), f) for f in (self.none, *self.fits)]
-        return sorted(pairs, key=lambda pair: -pair[0])
-
-    def best_of_size(self, size: int) -> Fit | None:
-        """The hypothesis of `size` (see `size_of`) with the highest score, or None."""
-        same = [f for f in (self.none, *self.fits) if size_of(f) == size and not hollow(f, self.phi)]
-        return max(same, key=self.score) if same else None
 
 
 @dataclass(slots=True)
@@ -143,7 +118,19 @@ class Searcher:
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
         if size == 2:
             fits += self._paired([c for c in singles if c.form is not None])
+            fits += self._reformed(best_forms(fits, self.channel.rows))
         return self._polished(best_forms(fits, self.channel.rows))
+
+    def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
+        """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
+        least = max(self.rules.enough - 1.0, self.rules.reform_share * (self.origins[0].mse - 1.0))
+        best = self._likely(pairs)[0] if pairs else None
+        if best is None or (best.mse - 1.0 <= least and best.prior < self.rules.bent):
+            return []
+        fits: list[Fit] = []
+        for alone, todo in in_other_forms(pairs, self.tried, self.rules.reformed):
+            fits += self._promising(alone, todo)
+        return fits
 
     def _drifting(self, level: Sequence[Fit]) -> list[Fit]:
         """What drifts beside the likeliest cause, where it may hide in the noise: more is not to be found there."""
@@ -166,8 +153,8 @@ class Searcher:
             beside = [(*causes, *some) for some in suspected(one)]
             if len(causes) > 2:
                 beside += [causes[:k] + causes[k + 1 :] for k in range(len(causes))]
-            todo |= {_exactly(some): (some, one) for some in beside}
-        known = {_exactly(f.space.causes) for f in found}
+            todo |= {exactly(some): (some, one) for some in beside}
+        known = {exactly(f.space.causes) for f in found}
         with ThreadPoolExecutor(self.rules.threads) as pool:
             return list(pool.map(lambda p: self._fit_from(*p), (p for key, p in todo.items() if key not in known)))
 
@@ -241,8 +228,3 @@ class Searcher:
         if any(c.effect is not None for c in causes):
             return self.channel.numbers
         return tuple(c.name.removeprefix("parameter:") for c in causes)
-
-
-def _exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
-    """A hypothesis by its causes and their forms."""
-    return frozenset((c.name, c.form.name if c.form else "") for c in causes)

@@ -41,9 +41,13 @@ class Fit:
         """The unknowns in their units."""
         return np.array([u.centre + u.unit * v for u, v in zip(self.space.unknowns, self.z, strict=True)])
 
-    def covariance(self) -> FloatArray:
-        """Of the unknowns in z, for residuals of their nominal noise; shape (unknowns, unknowns)."""
+    def covariance(self, without: Sequence[int] = ()) -> FloatArray:
+        """Of the unknowns in z, for residuals of their nominal noise; shape (unknowns, unknowns).
+
+        Those in `without` are taken as known.
+        """
         normal = self.normal + np.diag(1e-9 * np.maximum(np.diag(self.normal), 1e-9))
+        normal[list(without)] = normal[:, list(without)] = 0.0
         return np.asarray(np.linalg.pinv(normal)) if self.z.size else np.zeros((0, 0))
 
     def deviations(self, scale: float = 1.0) -> FloatArray:

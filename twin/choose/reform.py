@@ -1,0 +1,36 @@
+"""Pairs of effects in other forms than those that did best alone.
+
+Alone an effect takes the form that also imitates some of what the other one does; beside the other it may be wrong, and
+from there no change of a single form leads to the true pair.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from twin.fit.fitting import Fit
+from twin.fit.space import Cause
+
+
+def exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
+    """A hypothesis by its causes and their forms."""
+    return frozenset((c.name, c.form.name if c.form else "") for c in causes)
+
+
+def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
+    """For the best `most` of the pairs of effects: one effect alone in one of its forms, and it with the other effect
+    in every form, as far as `pairs` does not have them. `tried`: all causes alone in all forms.
+
+    The effect with fewer forms goes first: there is one look for each.
+    """
+    known = {exactly(f.space.causes) for f in pairs}
+    found = []
+    effects = [f for f in pairs if all(c.form is not None for c in f.space.causes)]
+    for pair in sorted(effects, key=lambda f: f.mse)[:most]:
+        alone = [[f for f in tried if f.names == (name,)] for name in pair.names]
+        first, second = sorted(alone, key=len)
+        for one in first:
+            todo = [(*one.space.causes, *other.space.causes) for other in second]
+            todo = [causes for causes in todo if exactly(causes) not in known]
+            found += [(one, todo)] if todo else []
+    return found
