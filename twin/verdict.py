@@ -18,6 +18,8 @@ from twin.stages import StageResult
 
 #: A converter whose pressure is off in a way that none explains matters only if it moves the stem by this share.
 MATERIAL_SHARE = 0.25
+#: Behind a converter that explains the rest, a share of the gap that needs no cause of its own.
+MINOR_SHARE = 0.02
 _EVENT_PROBABILITY = 0.97
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave.
 MISSED_FALSE = 4.0
@@ -68,11 +70,17 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
             continue
         if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
             continue
-        if decision.gap and not decision.explained and _comes_back(decision):
-            minor = decision.findings.channel.name == "pressure" and ep_share < MATERIAL_SHARE
-            if not minor:
-                return True
+        wanting = decision.gap and not decision.explained and _comes_back(decision)
+        if wanting and not _minor(result, decision, ep_share):
+            return True
     return False
+
+
+def _minor(result: StageResult, decision: Decision, ep_share: float) -> bool:
+    """Whether a channel's gap is next to nothing of the whole one: what moves no stem, what another one outweighs."""
+    if decision.findings.channel.name == "pressure":
+        return ep_share < MATERIAL_SHARE
+    return any(d.explained for d in result.decisions if d is not decision) and 1.0 - ep_share < MINOR_SHARE
 
 
 def _comes_back(decision: Decision) -> bool:

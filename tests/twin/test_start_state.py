@@ -95,8 +95,8 @@ def test_the_core_of_a_loose_linkage_starts_where_it_is_read() -> None:
 def test_where_a_valve_was_going_is_known_as_a_reading() -> None:
     """With a sensor that reads a tenth too much the stem goes a tenth less far."""
     plant = Plant(DESIGN, (inserted("lvdt_calibration", "gain", 0.1),))
-    record = recorded(plant, np.concatenate([np.full(400, 11.2), np.full(30, 4.0), np.full(400, 8.0)]))
+    record = recorded(plant, np.concatenate([np.full(400, 11.2), np.full(30, 7.1), np.full(400, 8.0)]))
     part = record.slice(445, 830)  # coasting in the middle of the deadband, to where no pressure says
     trial = make_trial(part, 0.02, start_play=moving_to(Plant(DESIGN), part, make_grid(part.time_s, 0.02)))
-    assert trial.start_play == pytest.approx(part.position[-1], abs=0.004 * DESIGN.travel)
+    assert trial.start_play == pytest.approx(part.position[-1], abs=0.001 * DESIGN.travel)
     assert np.abs(predict_reading(plant, trial) - part.position).max() < 0.006 * DESIGN.travel

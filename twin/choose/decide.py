@@ -17,6 +17,9 @@ from twin.fit.space import SHIFTED
 #: Share of the squared moves of the design numbers in re-tuning that an idle effect does not spare them.
 _SPARED = 0.5
 
+#: The true model's mean squared residual is at most so many times that of the likeliest one.
+_ABOVE_BEST = 1.5
+
 
 @dataclass(frozen=True, slots=True)
 class DecisionRules:
@@ -67,19 +70,18 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     `floor` is the mean squared residual of the true model, in units of the noise: above 1 where the driving pressure is
     itself uncertain.
     """
-    accepted = findings.none
-    size = 0
-    while True:
-        # A pair may be needed before either of its members shows, so look two steps ahead as well.
-        bigger = [findings.best_of_size(size + k) for k in (1, 2)]
-        better = next((f for f in bigger if f is not None and _worth(findings, accepted, f, rules, floor)), None)
-        if better is not None and accepted is findings.none:
-            better = plainer(findings, better, rules)
-            better = better if _worth(findings, accepted, better, rules, floor) else None
-        if better is None:
-            break
+    floor = _likely_floor(findings, floor)
+    accepted, instead = findings.none, None
+    while (better := _better(findings, accepted, rules, floor)) is not None:
+        if accepted is findings.none:
+            plain = plainer(findings, better, rules)
+            if not _worth(findings, accepted, plain, rules, floor):
+                break
+            instead, better = (better if plain is not better else None), plain
+        elif instead is not None:
+            # wrong numbers are not enough: the effect that they were taken for gets its chance
+            better, instead = instead, None
         accepted = better
-        size = size_of(better)
     accepted = _with_numbers(findings, _plainer_member(findings, accepted, rules), rules)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
@@ -87,6 +89,18 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     explained = size > 0 and (rest < rules.unexplained or nothing_left)
     gap = explained or findings.none.mse > rules.quiet * floor
     return Decision(findings, accepted, explained, gap, rest, floor)
+
+
+def _better(findings: Findings, accepted: Fit, rules: DecisionRules, floor: float) -> Fit | None:
+    """A larger hypothesis that is worth it. A pair may be needed before either of its members shows."""
+    bigger = [findings.best_of_size(size_of(accepted) + k) for k in (1, 2)]
+    return next((f for f in bigger if f is not None and _worth(findings, accepted, f, rules, floor)), None)
+
+
+def _likely_floor(findings: Findings, floor: float) -> float:
+    """The floor, no further above what the likeliest hypothesis leaves than the true one could be."""
+    _, likeliest = findings.scored()[0]
+    return max(1.0, min(floor, _ABOVE_BEST * likeliest.mse))
 
 
 def rest_of(findings: Findings, fit: Fit, floor: float) -> float:

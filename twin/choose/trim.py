@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from twin.catalog import effects
+from twin.choose.claims import size_of
 from twin.choose.decide import Decision, DecisionRules
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
@@ -38,7 +39,10 @@ def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decis
         rest = decision.rest_of(smaller)
         if rest >= rules.unexplained and smaller.mse >= rules.nothing_left * decision.floor:
             break
-        decision = replace(decision, accepted=smaller, rest=rest)
+        best = decision.findings.best_of_size(size_of(smaller))
+        if best is not None and decision.findings.score(best) > decision.findings.score(smaller) + rules.evidence:
+            smaller = best  # beside the cause that went it was not needed
+        decision = replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
     return decision
 
 

@@ -69,15 +69,17 @@ def fit(
 ) -> Fit:
     """Fits `space` from the best `refine` of the `starts` (vectors in z). `weights` (0..1 per row) holds rows out.
 
-    `anchor`: where the unknowns are believed to be (z) and how surely (standard deviations in z), besides their prior.
+    `anchor`: where the unknowns are believed to be (z) and how surely (standard deviations in z); their prior, no
+    narrower than ever, stands there too.
     """
     spreads = space.spreads
     root = None if weights is None else np.sqrt(weights)
+    centre = np.zeros_like(spreads) if anchor is None else anchor[0]
 
     def residuals(z: FloatArray) -> FloatArray:
         r = channel.residuals(space.plant(z))
         held = [] if anchor is None else [(z - anchor[0]) / anchor[1]]
-        return np.concatenate([r if root is None else r * root, z / spreads, *held])
+        return np.concatenate([r if root is None else r * root, (z - centre) / spreads, *held])
 
     ranked = _rank(residuals, starts, refine) if len(starts) > refine else list(starts)
     rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)

@@ -8,7 +8,7 @@ Source: the principle of Wiener, Extrapolation, Interpolation, and Smoothing of 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 
 from logs.recording import FloatArray
 from twin.fit.channel import pressure_fine
@@ -17,6 +17,8 @@ from twin.plant import Plant
 from twin.where.smoother import smooth_pressure
 
 WIDTH_S = 1.0
+#: The pressure stays within so many standard deviations of the readings of so many rows before and after.
+_OUTSIDE, _AROUND = 4.0, 3
 
 
 def smoothed_pressure(
@@ -42,8 +44,25 @@ def smoothed_pressure(
     width = max(width_s / period_s, 0.5)
     noise = sigma**2 * min(1.0, correlation_samples / (2.0 * np.sqrt(np.pi) * width))
     trusted = extra * _trust(extra, noise, period_s) if careful else extra
-    correction: FloatArray = np.interp(np.arange(trial.grid.n_fine), trial.grid.offsets, trusted)
-    return model + correction
+    fine = np.arange(trial.grid.n_fine)
+    correction: FloatArray = np.interp(fine, trial.grid.offsets, trusted)
+    low, high = _bounds(measured, sigma)
+    row = np.searchsorted(trial.grid.offsets, fine, side="right") - 1
+    return np.clip(model + correction, low[row], high[row])
+
+
+def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]:
+    """How low and high the pressure may have been about each row, for all that was read: shape (n,) each.
+
+    Where the model steps a little too early or late, what the measurement adds rings; a dip that never was would move
+    a play for good.
+    """
+    known = np.isfinite(measured)
+    size = 2 * _AROUND + 1
+    low = minimum_filter1d(np.where(known, measured, np.inf), size, mode="nearest") - _OUTSIDE * sigma
+    high = maximum_filter1d(np.where(known, measured, -np.inf), size, mode="nearest") + _OUTSIDE * sigma
+    bridged = np.isinf(low) | np.isinf(high)
+    return np.where(bridged, -np.inf, low), np.where(bridged, np.inf, high)
 
 
 def _trust(extra: FloatArray, noise: float, period_s: float) -> FloatArray:

@@ -52,6 +52,15 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     assert np.ptp(position) > 0.1
 
 
+def test_a_spread_of_plays_with_friction_in_the_motion_begins_at_rest() -> None:
+    names = [("distributed_hysteresis", "uniform"), ("friction_in_motion", "full")]
+    plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
+    record, start = jagged_record(), Start(9.0, 0.1, 0.1)
+    _, position = live(plant, record, start)
+    _, whole = simulate_recording(plant, record, start=start)
+    assert np.max(np.abs(position - whole)) < 1e-9
+
+
 @pytest.mark.parametrize("core", [0.09, 0.097, 0.2])
 def test_a_loose_linkage_begins_where_it_was_read(core: float) -> None:
     loose = Inserted("linkage_lost_motion", effects()["linkage_lost_motion"].form("play"), (0.012,))

@@ -1,0 +1,148 @@
+"""What the true model would leave, where a gap matters, and the plain cause that turns out not to be enough."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from tests.twin.trials import SIGMA, staircase, trial_of
+from twin.catalog import effect
+from twin.choose.decide import DecisionRules, _likely_floor, decide
+from twin.choose.findings import Findings
+from twin.choose.trim import trimmed
+from twin.choose.weigh import Weights
+from twin.effect import Scales
+from twin.fit.channel import position_channel
+from twin.fit.fitting import Fit
+from twin.fit.smooth import smoothed_pressure
+from twin.fit.space import Cause, make_space
+from twin.heldout import refitted
+from twin.plant import Inserted, Plant
+from twin.stages import StageResult
+from twin.verdict import Judgement, pronounce
+
+RULES = DecisionRules()
+DESIGN = DesignModel()
+
+
+def inserted(name: str, form: str, *values: float) -> Inserted:
+    return Inserted(name, effect(name).form(form), values)
+
+
+@cache
+def two_causes() -> tuple[StageResult, Judgement]:
+    """A converter that lags far behind, and a little creep behind it."""
+    design = replace(DESIGN, ep_tau_s=1.2)
+    return judged(a_record(Plant(design, (inserted("creep", "one_tail", 0.05, 30.0),))))
+
+
+def test_the_true_model_leaves_no_more_than_half_again_of_what_the_likeliest_leaves() -> None:
+    findings = two_causes()[0].decisions[1].findings
+    least = findings.scored()[0][1].mse
+    assert _likely_floor(findings, 30.0) == pytest.approx(1.5 * least)
+    assert _likely_floor(findings, 1.2) == 1.2
+    decision = decide(findings, RULES, 30.0)
+    assert decision.names == ("creep",) and decision.explained
+
+
+def without(result: StageResult, name: str) -> StageResult:
+    """The result with what nobody knows the cause of in the place of one."""
+    found = [
+        replace(d, accepted=d.findings.none, explained=False, gap=True, rest=1.0) if name in d.names else d
+        for d in result.decisions
+    ]
+    return replace(result, decisions=tuple(found))
+
+
+@pytest.mark.parametrize(("share", "verdict"), [(0.99, "parameter"), (0.97, "unexplained")])
+def test_a_rest_behind_a_converter_that_explains_the_gap_needs_no_cause(share: float, verdict: str) -> None:
+    result, _ = two_causes()
+    sensing: Any = SimpleNamespace(accepted={})
+    assert pronounce(without(result, "creep"), sensing, share, Weights()).verdict == verdict
+    nothing = without(without(result, "creep"), "parameter:ep_tau")
+    assert pronounce(nothing, sensing, share, Weights()).verdict == "unexplained"
+    quiet = replace(nothing, decisions=(replace(nothing.decisions[0], gap=False), nothing.decisions[1]))
+    assert pronounce(quiet, sensing, share, Weights()).verdict == "unexplained"
+
+
+def findings_of(fits: dict[tuple[str, ...], tuple[float, float]], before: float) -> Findings:
+    """Hypotheses with their (mse, score), on a channel that is not looked at."""
+    base = Plant(DESIGN)
+
+    def one(names: tuple[str, ...], mse: float) -> Fit:
+        causes = tuple(
+            Cause(n) if n.startswith("parameter:") else Cause(n, effect(n), effect(n).forms[0]) for n in names
+        )
+        space = make_space(base, causes, (), Scales())
+        z = np.full(len(space.unknowns), 0.5)
+        return Fit(space, z, mse, 0.0, np.zeros(1), 1e9 * np.eye(z.size), 1)
+
+    made = {names: one(names, mse) for names, (mse, _) in fits.items()}
+    none = one((), before)
+    scores = {id(f): fits[names][1] for names, f in made.items()} | {id(none): -1e6}
+    yardstick: Any = SimpleNamespace(phi=1.0, score=lambda f: scores[id(f)])
+    return Findings(None, none, none, tuple(made.values()), yardstick)  # type: ignore[arg-type]
+
+
+def test_wrong_numbers_that_are_not_enough_give_way_to_the_effect_they_were_taken_for() -> None:
+    fits = {
+        ("creep",): (1.0, 1000.0),
+        ("parameter:tau",): (5.0, 200.0),
+        ("friction_drift", "lvdt_drift"): (0.9, 600.0),
+    }
+    assert decide(findings_of(fits, 1400.0), RULES).names == ("creep",)
+    del fits[("friction_drift", "lvdt_drift")]
+    assert decide(findings_of(fits, 1400.0), RULES).names == ("parameter:tau",)
+
+
+def test_what_is_left_when_a_companion_goes_is_the_best_of_its_size() -> None:
+    fits = {
+        ("friction_drift", "lvdt_drift"): (0.9, 1001.0),
+        ("friction_drift", "creep"): (0.9, 1000.0),
+        ("friction_drift", "stiction"): (0.9, 1000.0),
+        ("friction_drift",): (1.0, 600.0),
+        ("sensor_lag",): (1.0, 900.0),
+    }
+    findings = findings_of(fits, 100.0)
+    decision = replace(decide(findings, RULES), accepted=findings.fits[0], explained=True, rest=0.0)
+    assert trimmed(decision, RULES, Weights()).names == ("sensor_lag",)
+    near = findings_of(fits | {("sensor_lag",): (1.0, 605.0)}, 100.0)
+    assert trimmed(replace(decision, findings=near, accepted=near.fits[0]), RULES, Weights()).names == (
+        "friction_drift",
+    )
+
+
+def test_what_a_fold_says_nothing_about_stays_where_the_whole_record_put_it() -> None:
+    """A rate limit that is reached in one block only; the prior of the others would pull it back to the design."""
+    fast = Plant(replace(DESIGN, rate_limit=0.24))
+    trial, _ = trial_of(fast, staircase())
+    channel = position_channel([trial], SIGMA)
+    space = make_space(Plant(DESIGN), (Cause("parameter:rate_limit"),), ("rate_limit",), Scales())
+    z = np.array([0.9])
+    found = Fit(space, z, 1.0, 0.0, np.zeros(1), np.zeros((1, 1)), 1)
+    nothing = np.zeros(trial.recording.n)
+    assert refitted([found], [channel], nothing)[0].z == pytest.approx(z, abs=1e-3)
+
+
+def test_a_dip_that_was_never_read_does_not_drive_the_play() -> None:
+    """The model steps a quarter of a second before the pressure does: what the measurement adds rings there."""
+    late = np.roll(staircase(), 3)
+    late[:3] = late[3]
+    trial, _ = trial_of(Plant(DESIGN), late)
+    measured = trial.recording.pressure
+    assert measured is not None
+    noisy = measured + np.random.default_rng(4).normal(0.0, 0.005, measured.size)
+    early = replace(trial, recording=replace(trial.recording, command=staircase(), pressure=noisy))
+    driven = smoothed_pressure(Plant(DESIGN), early, 0.005)[trial.grid.offsets]
+    assert driven.min() > measured.min() - 0.05 and driven.max() < measured.max() + 0.05
+    for row in np.flatnonzero(np.abs(np.diff(staircase())) > 0.5):
+        about = slice(max(row - 6, 0), row + 9)
+        assert driven[about].min() > noisy[about].min() - 0.03
+        assert driven[about].max() < noisy[about].max() + 0.03
