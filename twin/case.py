@@ -13,6 +13,7 @@ from logs.recording import DataNote, Recording
 from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
+from twin.places import places
 from twin.plant import Inserted, Plant
 from twin.refresh import fresh_rows
 from twin.simulate import moving_to
@@ -106,8 +107,8 @@ def make_case(
     )
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))
-    pairs = enumerate(zip(recordings, bad, strict=True))
-    trials = tuple(replace(_trial(base, r, b, held), part=(k, len(recordings))) for k, (r, b) in pairs)
+    triples = zip(recordings, bad, places(recordings), strict=True)
+    trials = tuple(replace(_trial(base, r, b, held), place=place) for r, b, place in triples)
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)

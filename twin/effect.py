@@ -102,6 +102,23 @@ def _no_bends() -> tuple[FloatArray, FloatArray, FloatArray]:
     return np.zeros(1), np.zeros(1), np.ones(1)
 
 
+@dataclass(frozen=True, slots=True)
+class Place:
+    """Where a recording stands among those that are diagnosed together: its number, of how many.
+
+    Where they share a clock: since when the first of them had begun, and how long they last in all, with what lies
+    between them; 0 where each has a clock of its own.
+    """
+
+    number: int = 0
+    of: int = 1
+    since_s: float = 0.0
+    span_s: float = 0.0
+
+
+ALONE = Place()
+
+
 @dataclass(slots=True)
 class Coefficients:
     """Everything the kernels need, filled from the design and then changed by effects. Made anew for each simulation.
@@ -114,7 +131,7 @@ class Coefficients:
 
     design: DesignModel
     duration_s: float
-    part: tuple[int, int] | None = None  # number of the recording, of how many; None: none of those that were fitted
+    place: Place | None = None  # None: none of the recordings that were diagnosed together
     ep: FloatArray = field(default_factory=neutral_ep)
     valve: FloatArray = field(default_factory=neutral_valve)
     sensor: FloatArray = field(default_factory=neutral_sensor)
@@ -127,9 +144,19 @@ class Coefficients:
     open_gain: float = 1.0
 
     @property
+    def since_s(self) -> float:
+        """Time between the beginning of the first recording and that of this one, as far as a clock tells [s]."""
+        return self.place.since_s if self.place is not None else 0.0
+
+    @property
     def xi(self) -> FloatArray:
         """Position grid as a fraction of travel, 0 = open."""
         return _XI
+
+    def widen(self, half: float) -> None:
+        """Adds to the half deadband [pressure] for good."""
+        self.close_shift += half
+        self.open_shift -= half
 
     def bend_at_stem(self, closing: FloatArray, opening: FloatArray, compliance: FloatArray | None = None) -> None:
         """Adds to the pressure needed where the stem is, and multiplies the compliance there; shapes (GRID,)."""

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Form
+from twin.effect import Coefficients, Form, Place
 from twin.kernels.ep import ep_kernel
 from twin.kernels.sensor import sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
@@ -58,9 +58,9 @@ class Plant:
     design: DesignModel
     inserted: Sequence[Inserted] = field(default_factory=tuple)
 
-    def coefficients(self, duration_s: float, part: tuple[int, int] | None = None) -> Coefficients:
-        """What the kernels need, with all effects written in; `part`: see `Coefficients`."""
-        c = Coefficients(self.design, duration_s, part)
+    def coefficients(self, duration_s: float, place: Place | None = None) -> Coefficients:
+        """What the kernels need, with all effects written in; `place`: see `Coefficients`."""
+        c = Coefficients(self.design, duration_s, place)
         d = self.design
         c.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = d.ep_tau_s
         c.valve[[V_HIGH, V_TRAVEL]] = d.travel

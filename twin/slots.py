@@ -88,7 +88,8 @@ S_CORE = S_SEEN + 1  # where the core of a loose linkage stands at the start [po
 S_CYCLE_S = S_CORE + 1  # period of a zero that comes and goes [s]; 0: none
 S_CYCLE_COS = S_CORE + 2  # 1 - cos, and sin, of it [position]
 S_CYCLE_SIN = S_CORE + 3
-S_COUNT = S_CYCLE_SIN + 1
+S_LAG2_S = S_CYCLE_SIN + 1  # a further lag behind the first
+S_COUNT = S_LAG2_S + 1
 
 FOREVER = 1e30
 

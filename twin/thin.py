@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from logs.recording import DataNote, FloatArray, Recording
 from twin.case import Case, Span, fine_step_s
+from twin.effect import Place
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
 from twin.simulate import moving_to
@@ -77,7 +78,7 @@ def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: 
     seen = sum(t.recording.n for t in trials)
     where = f"on {seen} rows all over it"
     if rows < whole:
-        where = f"on {seen} rows in {len(spans)} windows spread over it; slow changes are judged within a window only"
+        where = f"on {seen} rows in {len(spans)} windows spread over it"
     elif seen == whole:
         where = f"on all of them in steps of {COARSE_STEP_S:g} s"
     return DataNote(
@@ -139,8 +140,15 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
     play = moving_to(case.base, thin, make_grid(thin.time_s, step_s))
     trial = make_trial(thin, step_s, false, play, _fresh_of(whole, span, rows), vague)
-    trial = replace(trial, part=whole.part)
+    trial = replace(trial, place=_later(whole, span.start))
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
+
+
+def _later(whole: Trial, first: int) -> Place:
+    """The place of a part that begins with row `first`: the clock of its recording goes on from part to part."""
+    time_s, place = whole.recording.time_s, whole.place
+    since_s = place.since_s + float(time_s[first] - time_s[0])
+    return replace(place, since_s=since_s, span_s=place.span_s or whole.recording.duration_s)
 
 
 def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp] | None:

@@ -12,7 +12,7 @@ from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
-from twin.effect import Coefficients
+from twin.effect import Coefficients, Place
 from twin.fit.channel import position_channel, predict_reading
 from twin.plant import Inserted, Plant
 from twin.slots import KNOTS, S_DRIFT_RATE, S_ZERO
@@ -22,7 +22,7 @@ VALUES = tuple(0.001 * k for k in range(1, KNOTS + 1))
 
 
 def written(part: tuple[int, int] | None, duration_s: float = 100.0) -> Coefficients:
-    return Plant(DesignModel(), (Inserted("lvdt_drift", FORM, VALUES),)).coefficients(duration_s, part)
+    return Plant(DesignModel(), (Inserted("lvdt_drift", FORM, VALUES),)).coefficients(duration_s, part and Place(*part))
 
 
 def test_few_recordings_have_a_line_each_and_many_a_zero_each() -> None:

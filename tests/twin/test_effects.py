@@ -11,7 +11,7 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.catalog import effect, effects
-from twin.effect import Effect, Form, Parameter, Scales
+from twin.effect import Effect, Form, Parameter, Place, Scales
 from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
 from twin.timegrid import make_grid
 
@@ -49,7 +49,7 @@ def response(
     form: Form | None,
     values: tuple[float, ...],
     scales: Scales = REFERENCE,
-    part: tuple[int, int] | None = None,
+    place: Place | None = None,
 ) -> FloatArray:
     """Pressure and reading at the rows, shape (2, 1200)."""
     d = DesignModel()
@@ -66,7 +66,7 @@ def response(
     time_s, command = excitation()
     time_s, command = time_s * scales.time, command * scales.pressure
     grid = make_grid(time_s, 0.05 * scales.time)
-    c = plant.coefficients(float(time_s[-1]), part)
+    c = plant.coefficients(float(time_s[-1]), place)
     pressure = pressure_response(c, grid, command, float(command[0]))
     return np.array([pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))])
 
@@ -128,8 +128,8 @@ def test_every_start_changes_the_response(one: Effect, form: Form) -> None:
         for start in p.starts:
             values = typical(form)
             values[k] = start
-            part = (k // 2, form.apart // 2) if form.apart else None
-            change = response(one.name, form, tuple(values), part=part) - response("", None, ())
+            place = Place(k // 2, form.apart // 2) if form.apart else None
+            change = response(one.name, form, tuple(values), place=place) - response("", None, ())
             assert np.isfinite(change).all()
             assert (np.abs(change[stage_row]).max() > 1e-6) == (one.name not in WITHOUT_TRAJECTORY), (p.name, start)
     if not form.parameters and not form.seen:  # what is seen in the readings changes nothing where there are none

@@ -20,7 +20,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     An effect of the `base` plant stands trial only if the design's file brought it, and in the file's form: it may have
     changed. What was inserted for the record's sake (a late sample, a reading that rounds down) is settled.
     """
-    records = max((trial.part[1] for trial in channel.trials), default=1)
+    records = max((trial.place.of for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
     refreshed = all(trial.fresh is not None for trial in channel.trials)
     return [

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_STEP, V_STEP_TIME_S, V_WEAR
 
@@ -61,11 +63,13 @@ _WHEN = Parameter(
 
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_DRIFT_RATE] = values[0]
+    c.widen(values[0] * c.since_s)
 
 
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
-    c.valve[V_DRIFT_AMP] = values[0]
-    c.valve[V_DRIFT_TAU_S] = values[1]
+    left = values[0] * np.exp(-c.since_s / values[1])
+    c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = left, values[1]
+    c.widen(values[0] - left)
 
 
 def _wear(c: Coefficients, values: Sequence[float]) -> None:
@@ -73,8 +77,12 @@ def _wear(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _sudden(c: Coefficients, values: Sequence[float]) -> None:
-    c.valve[V_STEP] = values[0]
-    c.valve[V_STEP_TIME_S] = values[1] * c.duration_s
+    span_s = c.duration_s if c.place is None or c.place.span_s == 0.0 else c.place.span_s
+    when_s = values[1] * span_s - c.since_s
+    if when_s <= 0.0:
+        c.widen(values[0])
+    else:
+        c.valve[V_STEP], c.valve[V_STEP_TIME_S] = values[0], when_s
 
 
 EFFECT = Effect(

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import (
     KNOTS,
@@ -81,22 +83,29 @@ _PERIOD = Parameter(
 
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_RATE] = values[0]
+    c.sensor[S_ZERO] += values[0] * c.since_s
 
 
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_DRIFT_AMP] = values[0]
-    c.sensor[S_DRIFT_TAU_S] = values[1]
+    left = values[0] * np.exp(-c.since_s / values[1])
+    c.sensor[S_DRIFT_AMP], c.sensor[S_DRIFT_TAU_S] = left, values[1]
+    c.sensor[S_ZERO] += values[0] - left
 
 
 def _cycle(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_CYCLE_COS], c.sensor[S_CYCLE_SIN], c.sensor[S_CYCLE_S] = values
+    there, along, period_s = values
+    phase = 2.0 * np.pi * c.since_s / period_s
+    c.sensor[S_CYCLE_S] = period_s
+    c.sensor[S_CYCLE_COS] = there * np.cos(phase) - along * np.sin(phase)
+    c.sensor[S_CYCLE_SIN] = there * np.sin(phase) + along * np.cos(phase)
+    c.sensor[S_ZERO] += there - c.sensor[S_CYCLE_COS]
 
 
 def _apart(c: Coefficients, values: Sequence[float]) -> None:
     """Each recording with its own zero, at its start and, as far as the values go round, at its end."""
-    if c.part is None:
+    if c.place is None:
         return  # nobody knows the zero of another recording
-    number, of = c.part
+    number, of = c.place.number, c.place.of
     if 2 * of <= KNOTS:
         c.sensor[S_ZERO] += values[2 * number]
         c.sensor[S_DRIFT_RATE] += (values[2 * number + 1] - values[2 * number]) / max(c.duration_s, 1e-9)

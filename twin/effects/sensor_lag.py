@@ -5,37 +5,32 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_LAG_S
+from twin.slots import S_LAG2_S, S_LAG_S
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_LAG_S] = values[0]
 
 
+def _twice(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_LAG_S] = c.sensor[S_LAG2_S] = 0.5 * values[0]
+
+
+def _lag(doc: str) -> tuple[Parameter]:
+    return (Parameter(name="lag", kind="time", lower=0.0, upper=8.0, starts=(0.06, 0.25, 0.9), scale=0.5, doc=doc),)
+
+
 EFFECT = Effect(
     name="sensor_lag",
     stage="sensor",
     claim="The reading is low-pass filtered.",
-    equations="dy/dt = (x - y) / lag",
-    source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first-order instruments",
+    equations="dy/dt = (x - y) / lag; two_poles: half the lag, twice over, one behind the other",
+    source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments",
     forms=(
-        Form(
-            "first_order",
-            (
-                Parameter(
-                    name="lag",
-                    kind="time",
-                    lower=0.0,
-                    upper=8.0,
-                    starts=(0.06, 0.25, 0.9),
-                    scale=0.5,
-                    doc="time constant of the filter",
-                ),
-            ),
-            _apply,
-        ),
+        Form("first_order", _lag("time constant of the filter"), _apply),
+        Form("two_poles", _lag("time constants of the two equal poles together"), _twice),
     ),
     twins=("additional_lag", "dead_time"),
     absorbs=("tau",),
-    same_as={"first_order": ("additional_lag",)},
+    same_as={"first_order": ("additional_lag",), "two_poles": ("additional_lag",)},
 )

@@ -27,7 +27,7 @@ def predict_pressure(plant: Plant, trial: Trial) -> FloatArray:
 
 def pressure_fine(plant: Plant, trial: Trial) -> FloatArray:
     """Pressure on the fine grid from the command."""
-    c = plant.coefficients(trial.recording.duration_s, trial.part)
+    c = plant.coefficients(trial.recording.duration_s, trial.place)
     return pressure_response(c, trial.grid, trial.recording.command, trial.start_pressure)
 
 
@@ -44,7 +44,7 @@ def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
 
 
 def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
-    c = plant.coefficients(trial.recording.duration_s, trial.part)
+    c = plant.coefficients(trial.recording.duration_s, trial.place)
     start, c.sensor[S_CORE] = stem_at(c, trial.start_position), core_at(c, trial.start_position)
     play = start if trial.start_play is None else stem_at(c, trial.start_play)
     return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play), trial.fresh)

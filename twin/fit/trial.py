@@ -9,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
+from twin.effect import ALONE, Place
 from twin.timegrid import TimeGrid, make_grid
 
 #: Rows right after the start that do not count: the state before the first row is unknown.
@@ -28,7 +29,7 @@ class Trial:
     `start_play` is the reading towards which the valve was moving at the start, None where it stood still.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh` (int, shape (n,)) is the row in which each row's reading was new, where readings are seen to be held.
-    `part`: the number of the recording, and of how many, in the case.
+    `place`: among the recordings of the case.
     """
 
     recording: Recording
@@ -42,7 +43,7 @@ class Trial:
     vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
     fresh: npt.NDArray[np.intp] | None = None
-    part: tuple[int, int] = (0, 1)
+    place: Place = ALONE
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""

@@ -26,6 +26,7 @@ from twin.slots import (
     S_HOLD_PHASE_S,
     S_HOLD_S,
     S_KNOTS,
+    S_LAG2_S,
     S_LAG_S,
     S_PLAY,
     S_STEP,
@@ -44,7 +45,8 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
         plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
     if c[S_LAG_S] > 0.0:
         t = elapsed_s(time_s, offsets)
-        out[:] = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])[offsets]
+        late = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])
+        out[:] = lagged(time_s, offsets, late, c[S_LAG2_S])[offsets]
     else:
         out[:] = static_reading(core[offsets], time_s - time_s[0], c)
     if c[S_HOLD_S] > 0.0:

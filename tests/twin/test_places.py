@@ -1,0 +1,81 @@
+"""Recordings that share a clock: what drifts goes on from one to the next."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import Recording
+from tests.twin.trials import staircase, trial_of
+from twin.case import make_case
+from twin.catalog import effect
+from twin.diagnose import diagnose
+from twin.effect import Place
+from twin.fit.channel import predict_reading
+from twin.places import places
+from twin.plant import Inserted, Plant
+from twin.simulate import Start, simulate_recording
+from twin.thin import look_at
+
+DESIGN = DesignModel()
+DRIFTS = [
+    ("lvdt_drift", "linear", (4e-5,)),
+    ("lvdt_drift", "warm_up", (0.01, 150.0)),
+    ("lvdt_drift", "cycle", (0.004, -0.003, 210.0)),
+    ("friction_drift", "linear", (6e-4,)),
+    ("friction_drift", "warm_up", (0.3, 150.0)),
+    ("friction_drift", "sudden", (0.3, 0.2)),
+    ("friction_drift", "sudden", (0.3, 0.8)),
+]
+
+
+def blank(begin_s: float, rows: int = 100) -> Recording:
+    return Recording("r", begin_s + 0.1 * np.arange(rows), np.full(rows, 8.0), np.zeros(rows))
+
+
+def test_recordings_one_after_the_other_share_a_clock_in_any_order() -> None:
+    found = places([blank(50.0), blank(0.0), blank(20.0)])
+    assert [(p.number, p.of, p.since_s) for p in found] == [(0, 3, 50.0), (1, 3, 0.0), (2, 3, 20.0)]
+    assert found[0].span_s == pytest.approx(59.9)
+
+
+@pytest.mark.parametrize("begins", [(0.0, 0.0), (0.0, 5.0), (0.0, 5000.0), (3.0,)])
+def test_recordings_with_clocks_of_their_own(begins: tuple[float, ...]) -> None:
+    found = places([blank(begin_s) for begin_s in begins])
+    assert found == [Place(k, len(begins)) for k in range(len(begins))]
+
+
+@pytest.mark.parametrize(("name", "form", "values"), DRIFTS)
+def test_a_drift_goes_on_where_the_recording_before_ended(name: str, form: str, values: tuple[float, ...]) -> None:
+    plant = Plant(DESIGN, (Inserted(name, effect(name).form(form), values),))
+    n, cut = 3000, 1700
+    time_s = 0.1 * np.arange(n)
+    command = staircase()[:n]
+    record = Recording("whole", time_s, command, np.zeros(n))
+    pressure, position = simulate_recording(plant, record, start=Start(command[0], 0.0, 0.0))
+    whole = replace(record, pressure=pressure, position=position)
+    moved = position - simulate_recording(Plant(DESIGN), whole, start=Start(command[0], 0.0, 0.0))[1]
+    late = make_case([whole.slice(0, cut), whole.slice(cut, n)], DESIGN).trials[1]
+    assert np.abs(moved[cut:]).max() > 0.002
+    assert np.abs(predict_reading(plant, late) - late.recording.position)[50:].max() < 1e-3
+
+
+def test_the_parts_of_a_large_record_share_its_clock() -> None:
+    recording = trial_of(Plant(DESIGN), np.tile(staircase(), 30))[0].recording
+    look, _notes = look_at(make_case([recording], DESIGN))
+    assert len(look.trials) > 1
+    assert [t.place.since_s for t in look.trials] == pytest.approx([t.recording.time_s[0] for t in look.trials])
+    assert {t.place.span_s for t in look.trials} == {recording.duration_s}
+
+
+def test_a_friction_that_drifts_through_two_recordings_is_told() -> None:
+    plant = Plant(DESIGN, (Inserted("friction_drift", effect("friction_drift").form("linear"), (4e-4,)),))
+    recording = trial_of(plant, staircase())[0].recording
+    parts = [recording.slice(0, 1500), recording.slice(1800, 4000)]
+    outcome = diagnose(parts, DESIGN)
+    (cause,) = outcome.diagnosis.causes
+    assert cause.name == "friction_drift"
+    assert cause.parameters["rate"].value == pytest.approx(4e-4, rel=0.1)
