@@ -100,7 +100,9 @@ def diagnose(
 def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
     case, look, sensing, late = _prepared(known, settings, progress)
-    settings = replace(settings, rules=replace(settings.rules, gain=max(settings.rules.gain, known.margin_share)))
+    share = known.margin_share
+    rules = replace(settings.rules, gain=max(settings.rules.gain, share), within=1.0 if share > 0.0 else 0.0)
+    settings = replace(settings, rules=rules)
     result = judge(look, settings.search, settings.rules, progress, watch=known.searches.append)
     sure = tuple(trimmed(d, settings.rules, settings.weights) for d in result.decisions)
     result = replace(result, decisions=sure)

@@ -13,11 +13,14 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from tests.twin.trials import SIGMA, staircase, trial_of
+from twin.case import Margin
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules, _likely_floor, decide
+from twin.choose.decide import DecisionRules, _likely_floor, decide, plainer
 from twin.choose.findings import Findings
 from twin.choose.trim import trimmed
 from twin.choose.weigh import Weights
+from twin.closure import rms
+from twin.diagnose import Settings, diagnose
 from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit
@@ -25,6 +28,7 @@ from twin.fit.smooth import smoothed_pressure
 from twin.fit.space import Cause, make_space
 from twin.heldout import refitted
 from twin.plant import Inserted, Plant
+from twin.simulate import simulate_recording
 from twin.stages import StageResult
 from twin.verdict import Judgement, pronounce
 
@@ -146,3 +150,20 @@ def test_a_dip_that_was_never_read_does_not_drive_the_play() -> None:
         about = slice(max(row - 6, 0), row + 9)
         assert driven[about].min() > noisy[about].min() - 0.03
         assert driven[about].max() < noisy[about].max() + 0.03
+
+
+def test_a_number_that_leaves_no_more_than_a_healthy_machine_needs_no_effect_beside_or_instead() -> None:
+    fits = {("creep",): (0.6, 1000.0), ("parameter:tau",): (0.95, 900.0)}
+    findings = findings_of(fits, 50.0)
+    for within, name in ((1.0, "parameter:tau"), (0.0, "creep"), (0.9, "creep")):
+        assert plainer(findings, findings.fits[0], replace(RULES, within=within)).names == (name,)
+
+
+def test_what_a_healthy_machine_does_anyway_is_not_named() -> None:
+    creep = inserted("creep", "one_tail", 0.01, 30.0)
+    healthy, record = a_record(Plant(DESIGN, (creep,))), a_record(Plant(replace(DESIGN, a1=8.88, a2=5.92), (creep,)))
+    known = rms(healthy.position - simulate_recording(DESIGN, healthy)[1])
+    for margin, told in ((Margin(position=known), False), (Margin(), True)):
+        causes = diagnose([record], DESIGN, settings=Settings(margin=margin)).diagnosis.causes
+        assert ("creep" in {c.name for c in causes}) is told
+        assert told or [c.name for c in causes] == ["parameter:offset"]

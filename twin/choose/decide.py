@@ -39,6 +39,7 @@ class DecisionRules:
     plain: float = 0.05
     plain_share: float = 0.005
     quiet: float = 2.0
+    within: float = 0.0  # mean squared residual that the healthy machine leaves, where that is known (`Margin`)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,6 +113,7 @@ def rest_of(findings: Findings, fit: Fit, floor: float) -> float:
 def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins.
 
+    So is whatever it does better than the healthy machine would.
     Several numbers are no plainer than one effect: they have to have the better evidence too, unless the effect is
     idle beside the numbers that it brings along.
     """
@@ -119,7 +121,7 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
         return fit
     slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
-    near = [f for f in alone if f.mse <= fit.mse + slack]
+    near = [f for f in alone if f.mse <= max(fit.mse + slack, rules.within)]
     if not _idle(findings.retuned, fit, slack):
         near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
