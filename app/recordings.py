@@ -33,20 +33,25 @@ def common_units(recordings: Sequence[Recording]) -> tuple[str, str]:
     return first.pressure_unit, first.position_unit
 
 
-def design_for(path: Path | None, recordings: Sequence[Recording]) -> tuple[DesignModel, str]:
-    """The design in the recordings' units, and where it is from: a file, the defaults (psi and in), or the records.
+def design_for(
+    path: Path | None, recordings: Sequence[Recording], golden: Sequence[Recording] = ()
+) -> tuple[DesignModel, str]:
+    """The design in the recordings' units, and where it is from: a file, `golden` recordings of the healthy
+    machine, the defaults (psi and in), or the records.
 
     Raises: `BadInput` or `JobFailed` when it cannot be had, with what to do.
     """
     from control.design import DesignModel, load_design
     from twin.model_units import in_units_of
 
-    pressure_unit, position_unit = common_units(recordings)
+    pressure_unit, position_unit = common_units([*recordings, *golden])
     if path is not None:
         try:
             return in_units_of(load_design(path), pressure_unit, position_unit), str(path)
         except BadInput as error:
             raise error if str(error).startswith(str(path)) else BadInput(f"{path}: {error}") from error
+    if golden:
+        return _identified(golden, pressure_unit, position_unit), "identified from the healthy recordings"
     if (pressure_unit, position_unit) == ("psi", "in"):
         return DesignModel(), "the defaults"
     return _identified(recordings, pressure_unit, position_unit), "identified from the record"

@@ -15,13 +15,15 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from control.design import DesignModel
-    from logs.recording import Recording
+    from logs.recording import DataNote, Recording
+    from twin.case import Margin
     from twin.diagnose import Outcome
     from twin.diagnosis import Diagnosis
 
 #: What it means that nobody gave a design.
 _WITHOUT_DESIGN = {
     "the defaults": "the thesis's numbers are what the record is held against",
+    "identified from the healthy recordings": "the gap is what has changed since",
     "identified from the record": "the gap is what no numbers of the design can explain; a wrong number cannot show",
 }
 
@@ -33,6 +35,12 @@ _IDENTIFIED = 0.2
 @click.command()
 @click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
 @click.option("--design", type=click.Path(path_type=Path), help="Design model file; without it the thesis's numbers.")
+@click.option(
+    "--healthy",
+    type=click.Path(path_type=Path),
+    multiple=True,
+    help="Recording of the machine with nothing wrong (may be repeated): what the design misses there is no gap.",
+)
 @click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder for diagnosis.json, report, model.")
 @foreign_options
 @click.option("--active", is_flag=True, help="Run the experiments that tell most on the bench, until it is sure.")
@@ -45,6 +53,7 @@ _IDENTIFIED = 0.2
 def command(
     runs: tuple[Path, ...],
     design: Path | None,
+    healthy: tuple[Path, ...],
     out: Path,
     mapping: str | None,
     units: str | None,
@@ -64,18 +73,20 @@ def command(
 
     if not runs and not active:
         raise BadInput("name a run to diagnose, or let --active make one: diagnose RUN... --out DIR")
-    recordings = load_all(runs, mapping, units, command_timing)
+    recordings, golden = (load_all(paths, mapping, units, command_timing) for paths in (runs, healthy))
     out.mkdir(parents=True, exist_ok=True)
     if active:
-        outcome = _pursued(recordings, design, out, budget_minutes, bench)
+        outcome = _pursued(recordings, golden, design, out, budget_minutes, bench)
     else:
         if any(value for name, value in bench.items() if name != "seed"):
             raise BadInput("options that choose a bench need --active: without it nothing but files is touched")
-        outcome = _diagnosed(recordings, design, out, bench["seed"])
+        outcome = _diagnosed(recordings, golden, design, out, bench["seed"])
     _print(outcome, out, as_json)
 
 
-def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, seed: int) -> Outcome:
+def _diagnosed(
+    recordings: Sequence[Recording], golden: Sequence[Recording], design: Path | None, out: Path, seed: int
+) -> Outcome:
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
     from app.recordings import design_for
@@ -86,13 +97,15 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
     from twin.write import write_outcome
 
     outcome = None
-    model, origin = design_for(design, recordings)
-    said = () if design else (DataNote(f"no --design given: {origin}", _WITHOUT_DESIGN.get(origin, "")),)
+    model, origin = design_for(design, recordings, golden)
+    margin, known = _margin(golden, model)
+    said = known if design else (DataNote(f"no --design given: {origin}", _WITHOUT_DESIGN.get(origin, "")), *known)
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
             identified = origin == "identified from the record"
-            settings = Settings(seed=seed, doubt=_IDENTIFIED) if identified else Settings(seed=seed)
+            settings = Settings(seed=seed, margin=margin)
+            settings = replace(settings, doubt=_IDENTIFIED) if identified else settings
             outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
             if identified and _accuses_numbers(outcome):
                 # The numbers come from this very record: they cannot be off, they were only not found well enough.
@@ -106,6 +119,21 @@ def _diagnosed(recordings: Sequence[Recording], design: Path | None, out: Path, 
             click.echo(f"Interrupted at the pictures; {out / 'diagnosis.json'} and model.toml beside it are complete.")
         raise
     return outcome
+
+
+def _margin(golden: Sequence[Recording], model: DesignModel) -> tuple[Margin, tuple[DataNote, ...]]:
+    """What the design misses on the healthy machine anyway, and what to say of it."""
+    from logs.recording import DataNote
+    from twin.case import Margin
+    from twin.healthy import healthy_margin
+    from twin.insert import plant_of
+
+    if not golden:
+        return Margin(), ()
+    margin = healthy_margin(golden, plant_of(model))
+    what = f"the design misses the healthy machine by {100.0 * margin.position / model.travel:.2g} % of travel"
+    pressure = f" and {margin.pressure:.2g} {model.pressure_unit}" if margin.pressure else ""
+    return margin, (DataNote(f"{what}{pressure} RMS", "a cause has to explain more than that"),)
 
 
 def _accuses_numbers(outcome: Outcome) -> bool:
@@ -122,7 +150,12 @@ def _leave(diagnosis: Diagnosis, model: DesignModel, out: Path) -> None:
 
 
 def _pursued(
-    recordings: list[Recording], design: Path | None, out: Path, budget_minutes: float, bench: dict[str, Any]
+    recordings: list[Recording],
+    golden: Sequence[Recording],
+    design: Path | None,
+    out: Path,
+    budget_minutes: float,
+    bench: dict[str, Any],
 ) -> Outcome:
     """The circle of diagnosis and experiment; every round is written, so that a stop leaves what is known."""
     import json
@@ -144,7 +177,12 @@ def _pursued(
 
     with runner(out, **{**bench, "profile": found}) as run:
         pursuit = pursue(
-            recordings, first, budget_minutes, run, lambda known: _diagnosed(known, design, out, bench["seed"]), tell
+            recordings,
+            first,
+            budget_minutes,
+            run,
+            lambda known: _diagnosed(known, golden, design, out, bench["seed"]),
+            tell,
         )
     document = {"why": pursuit.why, "rounds": [asdict(one) for one in pursuit.rounds]}
     (out / "rounds.json").write_text(json.dumps(document, indent=2) + "\n", encoding="utf-8")
