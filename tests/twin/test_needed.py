@@ -15,7 +15,7 @@ from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision, DecisionRules, plainer
 from twin.choose.lean import _Leaning, leaning
 from twin.choose.trim import dropped, trimmed
-from twin.choose.weigh import Weights
+from twin.choose.weigh import Weights, weigh
 from twin.diagnosis import Cause as Named
 from twin.effect import Scales
 from twin.fit.space import Cause, make_space
@@ -174,3 +174,26 @@ def test_what_drifts_between_repeats_is_found_beside_a_cause_that_does_not(rate:
     record = a_record(Plant(DesignModel(), (play, wear) if rate else (play,)), twice=True)
     _, judgement = judged(record)
     assert {c.name for c in judgement.causes} == {"linkage_lost_motion"} | ({"friction_drift"} if rate else set())
+
+
+def test_an_idle_effect_is_no_rival_of_a_wrong_number() -> None:
+    """A rate limit that is hardly ever reached: any effect with its number moved part of the way does as well."""
+    result, _ = slipped(0.015)
+    decision = result.decisions[-1]
+    findings = decision.findings
+    number = next(f for f in findings.fits if f.names == ("parameter:compliance",))
+    lag = effect_causes(findings.channel)[0]
+    space = make_space(findings.retuned.space.base, (lag,), findings.retuned.space.numbers, Scales())
+    room = np.full(len(space.unknowns) - len(space.numbers), 0.5)
+    at = findings.retuned.space.numbers.index("compliance")
+    far = replace(number, z=number.z * 4.0, mse=findings.retuned.mse)
+    rival = replace(
+        findings.retuned, space=space, z=np.concatenate([findings.retuned.z, room]), normal=1e9 * np.eye(room.size + 5)
+    )
+    assert abs(rival.z[at]) < 0.5 * abs(far.z[0])  # it does not lean on the number as far as the accusation goes
+    alone = replace(findings, fits=(far, rival))
+    accepted = replace(decision, findings=alone, accepted=far)
+    assert rival.names[0] not in weigh(accepted, Weights()).probability
+    works = replace(rival, mse=rival.mse - 1.0)
+    busy = replace(accepted, findings=replace(alone, fits=(far, works)))
+    assert works.names[0] in weigh(busy, Weights()).probability

@@ -119,10 +119,10 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """
     if size_of(fit) > 1:
         return fit
-    slack = max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
+    slack = _slack(findings, rules)
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= max(fit.mse + slack, rules.within)]
-    if not _idle(findings.retuned, fit, slack):
+    if not idle(findings, fit, rules):
         near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
         return fit
@@ -132,9 +132,15 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     return min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
 
 
-def _idle(retuned: Fit, fit: Fit, slack: float) -> bool:
+def _slack(findings: Findings, rules: DecisionRules) -> float:
+    """By how much more of the noise variance a plain hypothesis may leave."""
+    return max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
+
+
+def idle(findings: Findings, fit: Fit, rules: DecisionRules) -> bool:
     """Whether the effects of `fit` explain no more than re-tuning does, and spare the numbers nothing by it."""
-    return retuned.mse <= fit.mse + slack and _moved(fit) >= _SPARED * _moved(retuned)
+    retuned = findings.retuned
+    return retuned.mse <= fit.mse + _slack(findings, rules) and _moved(fit) >= _SPARED * _moved(retuned)
 
 
 def _moved(fit: Fit) -> float:

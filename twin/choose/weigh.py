@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.choose.claims import hollow, size_of
-from twin.choose.decide import Decision
+from twin.choose.decide import Decision, DecisionRules, idle
 from twin.fit.fitting import Fit
 
 #: Nats that a further wrong number has to be worth to count as a hypothesis of its own.
@@ -60,7 +60,8 @@ def _comparable(decision: Decision) -> list[Fit]:
     """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed, and
     none whose effect has no size, since it is its numbers that explain the gap.
 
-    Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far.
+    Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far; and where
+    nothing else was, only if they do more than the numbers that they bring along.
     """
     accepted = decision.accepted
     size = size_of(accepted)
@@ -68,12 +69,18 @@ def _comparable(decision: Decision) -> list[Fit]:
     fits = [f for f in everything if size_of(f) <= size and f is not accepted and not hollow(f, decision.findings.phi)]
     fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
     fits = [f for f in fits if not _leans_on(f, accepted)]
+    if accepted.names and not _effects(accepted):
+        fits = [f for f in fits if not _effects(f) or not idle(decision.findings, f, DecisionRules())]
     return [*fits, accepted]
+
+
+def _effects(fit: Fit) -> bool:
+    return any(c.effect is not None for c in fit.space.causes)
 
 
 def _adds_nothing(decision: Decision, fit: Fit, everything: Sequence[Fit]) -> bool:
     """Whether fewer wrong numbers do as well: each number would otherwise be believed once for every companion."""
-    if len(fit.names) < 2 or any(c.effect is not None for c in fit.space.causes):
+    if len(fit.names) < 2 or _effects(fit):
         return False
     least = decision.findings.score(fit) - _COMPANION
     fewer = [f for f in everything if set(f.names) < set(fit.names) and f.names]
@@ -82,7 +89,7 @@ def _adds_nothing(decision: Decision, fit: Fit, everything: Sequence[Fit]) -> bo
 
 def _leans_on(fit: Fit, accepted: Fit) -> bool:
     """Whether an effect hypothesis moves an accused number, unaccused, at least half as far as the accusation does."""
-    if all(c.effect is None for c in fit.space.causes):
+    if not _effects(fit):
         return False
     for k, name in enumerate(accepted.space.numbers):
         if f"parameter:{name}" in accepted.names and f"parameter:{name}" not in fit.names:
