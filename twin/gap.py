@@ -112,7 +112,9 @@ def upheld(
     if sensing.accepted:
         return parts, _only_seen(judgement, sensing) if before <= floor else judgement
     vain = after > NO_BETTER * before or _doubted(judgement)
-    if before <= HARDLY * floor or (vain and before < SLIGHT * floor):
+    # how much an unmeasured pressure wandered by itself nobody knows
+    hardly = HARDLY if apart else SLIGHT
+    if before <= hardly * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
     if vain or _leaves(before, after, floor, judgement.causes, apart):
         return _unexplained(parts, judgement)

@@ -112,6 +112,11 @@ def test_without_a_pressure_a_cause_before_it_counts_with_those_behind() -> None
     assert told == ["effects", "unexplained"]
 
 
+def test_without_a_measured_pressure_a_slight_miss_may_be_the_pressure_itself() -> None:
+    for before, apart, verdict in ((1.2, False, "no_gap"), (1.2, True, "effect"), (1.35, False, "effect")):
+        assert upheld(parts(before, before, 0.9), NAMED, 1.0, NOTHING_SEEN, apart)[1].verdict == verdict
+
+
 def test_what_the_readings_showed_needs_no_prediction() -> None:
     seen = Sensing((), {"sensor_quantization": {}}, 0.01)
     assert upheld(parts(3.0, 3.0, 3.0), NAMED, 1.0, seen, True)[1] is NAMED
