@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from math import exp
 from typing import Literal
 
 import numpy as np
@@ -107,13 +108,16 @@ class Place:
     """Where a recording stands among those that are diagnosed together: its number, of how many.
 
     Where they share a clock: since when the first of them had begun, and how long they last in all, with what lies
-    between them; 0 where each has a clock of its own.
+    between them; 0 where each has a clock of its own. A part of a recording begins `within_s` after it, and the whole
+    lasts `whole_s` (0: it is the whole).
     """
 
     number: int = 0
     of: int = 1
     since_s: float = 0.0
     span_s: float = 0.0
+    within_s: float = 0.0
+    whole_s: float = 0.0
 
 
 ALONE = Place()
@@ -152,6 +156,10 @@ class Coefficients:
     def xi(self) -> FloatArray:
         """Position grid as a fraction of travel, 0 = open."""
         return _XI
+
+    def to_come(self, change: float, settling_s: float) -> float:
+        """What is left, when this recording begins, of a change that settles exponentially from the first one on."""
+        return change * exp(-self.since_s / settling_s)
 
     def widen(self, half: float) -> None:
         """Adds to the half deadband [pressure] for good."""

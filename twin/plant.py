@@ -27,15 +27,13 @@ from twin.slots import (
     S_SWING,
     S_TRAVEL,
     S_ZERO,
-    V_HARD_HIGH,
-    V_HARD_LOW,
     V_HIGH,
-    V_LOW,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
     V_TRAVEL,
+    stem_stops,
 )
 from twin.timegrid import TimeGrid
 
@@ -163,5 +161,5 @@ def core_at(c: Coefficients, reading: float) -> float:
 
 def stem_at(c: Coefficients, reading: float) -> float:
     """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
-    low, high = max(c.valve[V_LOW], c.valve[V_HARD_LOW]), min(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
-    return float(min(max(core_at(c, reading), low), high))
+    low, high = stem_stops(c.valve)
+    return min(max(core_at(c, reading), low), high)

@@ -99,6 +99,11 @@ GRID = 65
 PLAYS = 12
 
 
+def stem_stops(valve: FloatArray) -> tuple[float, float]:
+    """Lowest and highest position of the stem: its own stops and those of the play, whichever are nearer."""
+    return float(max(valve[V_LOW], valve[V_HARD_LOW])), float(min(valve[V_HIGH], valve[V_HARD_HIGH]))
+
+
 def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
     c = np.zeros(EP_COUNT)

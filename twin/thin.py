@@ -147,8 +147,9 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
 def _later(whole: Trial, first: int) -> Place:
     """The place of a part that begins with row `first`: the clock of its recording goes on from part to part."""
     time_s, place = whole.recording.time_s, whole.place
-    since_s = place.since_s + float(time_s[first] - time_s[0])
-    return replace(place, since_s=since_s, span_s=place.span_s or whole.recording.duration_s)
+    within_s, whole_s = float(time_s[first] - time_s[0]), whole.recording.duration_s
+    since_s = place.since_s + within_s
+    return replace(place, since_s=since_s, span_s=place.span_s or whole_s, within_s=within_s, whole_s=whole_s)
 
 
 def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp] | None:

@@ -32,6 +32,13 @@ def test_few_recordings_have_a_line_each_and_many_a_zero_each() -> None:
     assert c.sensor[S_ZERO] == pytest.approx(0.008) and c.sensor[S_DRIFT_RATE] == 0.0
 
 
+def test_a_part_of_a_recording_lies_on_the_line_of_the_whole() -> None:
+    """A window of 20 s from 30 s on, of 100 s: the zero goes from 3 to 4 thousandths over all of it."""
+    plant = Plant(DesignModel(), (Inserted("lvdt_drift", FORM, VALUES),))
+    c = plant.coefficients(20.0, Place(1, 5, since_s=30.0, span_s=100.0, within_s=30.0, whole_s=100.0))
+    assert c.sensor[S_ZERO] == pytest.approx(0.0033) and c.sensor[S_DRIFT_RATE] == pytest.approx(1e-5)
+
+
 def test_the_zero_of_another_recording_is_not_known() -> None:
     c = written(None)
     assert c.sensor[S_ZERO] == c.sensor[S_DRIFT_RATE] == 0.0

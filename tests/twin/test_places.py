@@ -68,7 +68,8 @@ def test_the_parts_of_a_large_record_share_its_clock() -> None:
     look, _notes = look_at(make_case([recording], DESIGN))
     assert len(look.trials) > 1
     assert [t.place.since_s for t in look.trials] == pytest.approx([t.recording.time_s[0] for t in look.trials])
-    assert {t.place.span_s for t in look.trials} == {recording.duration_s}
+    assert {t.place.span_s for t in look.trials} == {t.place.whole_s for t in look.trials} == {recording.duration_s}
+    assert [t.place.within_s for t in look.trials] == [t.place.since_s for t in look.trials]
 
 
 def test_a_friction_that_drifts_through_two_recordings_is_told() -> None:

@@ -17,6 +17,13 @@ def exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
     return frozenset((c.name, c.form.name if c.form else "") for c in causes)
 
 
+def bent_by(one: Fit) -> float:
+    """How far a hypothesis moves the design numbers: squares of their priors' standard deviations."""
+    count = len(one.space.numbers)
+    moved = one.z[:count] / one.space.spreads[:count]
+    return float(moved @ moved)
+
+
 def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
     """For the best `most` of the pairs of effects: one effect alone in one of its forms, and it with the other effect
     in every form, as far as `pairs` does not have them. `tried`: all causes alone in all forms.

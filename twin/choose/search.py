@@ -16,7 +16,7 @@ from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
 from twin.choose.pairs import promising_pairs
-from twin.choose.reform import exactly, in_other_forms
+from twin.choose.reform import bent_by, exactly, in_other_forms
 from twin.choose.score import make_yardstick
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
@@ -43,7 +43,7 @@ class SearchRules:
     forms: int = 3  # each in so many forms at the most
     reformed: int = 6  # pairs whose members are tried in their other forms,
     reform_share: float = 0.002  # where the likeliest pair leaves more than this share of what the design leaves,
-    bent: float = 4.0  # or moves its unknowns by more than this against their priors (squares of their deviations)
+    bent: float = 4.0  # or moves its design numbers by more than this (squares of their priors' deviations)
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
@@ -125,7 +125,7 @@ class Searcher:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
         least = max(self.rules.enough - 1.0, self.rules.reform_share * (self.origins[0].mse - 1.0))
         best = self._likely(pairs)[0] if pairs else None
-        if best is None or (best.mse - 1.0 <= least and best.prior < self.rules.bent):
+        if best is None or (best.mse - 1.0 <= least and bent_by(best) < self.rules.bent):
             return []
         fits: list[Fit] = []
         for alone, todo in in_other_forms(pairs, self.tried, self.rules.reformed):

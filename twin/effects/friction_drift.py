@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-import numpy as np
-
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_STEP, V_STEP_TIME_S, V_WEAR
 
@@ -67,7 +65,7 @@ def _linear(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
-    left = values[0] * np.exp(-c.since_s / values[1])
+    left = c.to_come(*values)
     c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = left, values[1]
     c.widen(values[0] - left)
 

@@ -87,7 +87,7 @@ def _linear(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
-    left = values[0] * np.exp(-c.since_s / values[1])
+    left = c.to_come(*values)
     c.sensor[S_DRIFT_AMP], c.sensor[S_DRIFT_TAU_S] = left, values[1]
     c.sensor[S_ZERO] += values[0] - left
 
@@ -107,8 +107,10 @@ def _apart(c: Coefficients, values: Sequence[float]) -> None:
         return  # nobody knows the zero of another recording
     number, of = c.place.number, c.place.of
     if 2 * of <= KNOTS:
-        c.sensor[S_ZERO] += values[2 * number]
-        c.sensor[S_DRIFT_RATE] += (values[2 * number + 1] - values[2 * number]) / max(c.duration_s, 1e-9)
+        first, last = values[2 * number : 2 * number + 2]
+        rate = (last - first) / max(c.place.whole_s or c.duration_s, 1e-9)
+        c.sensor[S_ZERO] += first + rate * c.place.within_s
+        c.sensor[S_DRIFT_RATE] += rate
     else:
         c.sensor[S_ZERO] += values[number]
 

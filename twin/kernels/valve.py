@@ -24,8 +24,6 @@ from twin.slots import (
     V_DRIFT_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
-    V_HARD_HIGH,
-    V_HARD_LOW,
     V_HELD,
     V_HIGH,
     V_IN_MOTION,
@@ -44,6 +42,7 @@ from twin.slots import (
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
     V_WEAR,
+    stem_stops,
 )
 
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD]
@@ -90,7 +89,7 @@ def _stem(
     out: FloatArray,
 ) -> None:
     """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
-    low, high = max(c[V_LOW], c[V_HARD_LOW]), min(c[V_HIGH], c[V_HARD_HIGH])
+    low, high = stem_stops(c)
     at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
     if couples(c, bends):
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])

@@ -9,7 +9,7 @@ from twin.effect import Coefficients
 from twin.kernels.coupled import coupled_start, coupled_steps
 from twin.kernels.play import common_start
 from twin.plant import curve_tables
-from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+from twin.slots import V_HIGH, V_LOW, stem_stops
 
 
 class Stuck:
@@ -17,7 +17,7 @@ class Stuck:
 
     def __init__(self, c: Coefficients, x0: float, w0: float) -> None:
         v = c.valve
-        stops = np.array([v[V_LOW], v[V_HIGH], max(v[V_LOW], v[V_HARD_LOW]), min(v[V_HIGH], v[V_HARD_HIGH])])
+        stops = np.array([v[V_LOW], v[V_HIGH], *stem_stops(v)])
         first, step, closing, opening = curve_tables(c)
         tables = (float(first), float(step), closing, opening)
         self._what = (v, stops, tables, (c.spreads, c.weights), c.stem_bends)

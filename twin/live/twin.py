@@ -15,7 +15,7 @@ from twin.live.sensor import Sensor
 from twin.live.valve import Valve
 from twin.plant import Plant, core_at, stem_at
 from twin.simulate import Start, step_for
-from twin.slots import S_SEEN, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+from twin.slots import S_SEEN, stem_stops
 
 _MOST_STEPS = 10_000
 
@@ -35,8 +35,8 @@ class LiveTwin:
         self._time_s = time_s
         self._converter = Converter(c.ep, time_s, command, start.pressure)
         self._valve = Valve(c, time_s, start.position, start.play)
-        low, high = max(c.valve[V_LOW], c.valve[V_HARD_LOW]), min(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
-        self._sensor = Sensor(c.sensor, time_s, float(min(max(start.position, low), high)), start.core)
+        low, high = stem_stops(c.valve)
+        self._sensor = Sensor(c.sensor, time_s, min(max(start.position, low), high), start.core)
         self.pressure = start.pressure
         self.position = self._sensor.first
 

@@ -24,8 +24,6 @@ from twin.slots import (
     V_DRIFT_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
-    V_HARD_HIGH,
-    V_HARD_LOW,
     V_HIGH,
     V_LOW,
     V_OUTER,
@@ -40,6 +38,7 @@ from twin.slots import (
     V_TAU_BEFORE_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
+    stem_stops,
 )
 
 
@@ -121,7 +120,7 @@ class Sliding:
         self._tails = Tails(c if v[V_TARGET_CREEPS] != 0.0 else None)
         self._after = Lag(float(v[V_TAU_AFTER_S]))
         self._lags_s, self._rates = v[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], v[[V_RATE_CLOSE, V_RATE_OPEN]]
-        self._low, self._high = max(v[V_LOW], v[V_HARD_LOW]), min(v[V_HIGH], v[V_HARD_HIGH])
+        self._low, self._high = stem_stops(v)
         self._x = x0
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
