@@ -13,7 +13,7 @@ from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
-from twin.choose.trim import trimmed
+from twin.choose.twins import settled
 from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
 from twin.diagnosis import Diagnosis
@@ -104,7 +104,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     rules = replace(settings.rules, gain=max(settings.rules.gain, share), within=1.0 if share > 0.0 else 0.0)
     settings = replace(settings, rules=rules)
     result = judge(look, settings.search, settings.rules, progress, watch=known.searches.append)
-    sure = tuple(trimmed(d, settings.rules, settings.weights) for d in result.decisions)
+    sure = tuple(settled(d, settings.rules, settings.weights) for d in result.decisions)
     result = replace(result, decisions=sure)
     retuned = retuned_fit(look)
     everything = on_everything(case, result)

@@ -41,7 +41,7 @@ def test_the_wrong_numbers_are_named_and_no_effect(design: DesignModel, wrong: s
 def test_an_effect_is_not_put_down_to_the_numbers() -> None:
     lagged = Plant(DesignModel(), (Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (0.5,)),))
     _, judgement = judged(a_record(lagged), DesignModel())
-    assert [c.name for c in judgement.causes] == ["sensor_lag"]
+    assert len(judgement.causes) == 1 and judgement.causes[0].name in {"sensor_lag", "additional_lag"}
 
 
 def test_a_design_without_a_gap_is_not_taken_apart() -> None:

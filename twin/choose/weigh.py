@@ -14,6 +14,7 @@ import numpy as np
 
 from twin.choose.claims import hollow, size_of
 from twin.choose.decide import Decision, DecisionRules, idle
+from twin.choose.usual import log_usual
 from twin.fit.fitting import Fit
 
 #: Nats that a further wrong number has to be worth to count as a hypothesis of its own.
@@ -46,14 +47,24 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     scores = np.array([decision.findings.score(f) for f in fits])
     scores = np.minimum(scores, decision.findings.score(decision.accepted))
     odds = np.exp((scores - scores.max()) / weights.temperature)
+    odds *= np.exp([_usual(decision.accepted, f) for f in fits])
     odds /= odds.sum()
     names = sorted({name for f in fits for name in f.names})
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
     probability = {n: min(p, weights.ceiling) for n, p in raw.items()}
     for name in decision.names:
-        if _twins(decision.accepted, name):
+        if twins_of(decision.accepted, name):
             probability[name] = min(probability[name], weights.twin_ceiling)
     return Weighed(probability, _sets(decision, fits, odds, weights))
+
+
+def _usual(accepted: Fit, fit: Fit) -> float:
+    """What the size of a twin that stands in the place of an accepted cause has for itself, in nats."""
+    for name in accepted.names:
+        twins = [t for t in twins_of(accepted, name) if sorted(fit.names) == sorted({*accepted.names, t} - {name})]
+        if twins:
+            return log_usual(fit) - log_usual(accepted)
+    return 0.0
 
 
 def _comparable(decision: Decision) -> list[Fit]:
@@ -112,13 +123,13 @@ def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: We
             if f is not accepted and len(f.names) == len(accepted.names) and others < set(f.names)
         ]
         near = [rival for o, rival in sorted(rivals, reverse=True) if o > weights.confusable * own]
-        near += [twin for twin in _twins(accepted, name) if twin not in near]
+        near += [twin for twin in twins_of(accepted, name) if twin not in near]
         if near:
             found.append((name, *near))
     return tuple(found)
 
 
-def _twins(accepted: Fit, name: str) -> list[str]:
+def twins_of(accepted: Fit, name: str) -> list[str]:
     """Effects whose signature is the same but for a shape that nobody knows: evidence between them is evidence about
     the shapes that happen to be in the catalogue."""
     cause = next(c for c in accepted.space.causes if c.name == name)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_TAU_AFTER_S, V_TAU_BEFORE_S
+from twin.slots import S_LAG_S, V_TAU_AFTER_S, V_TAU_BEFORE_S
 
 
 def _lag(doc: str) -> tuple[Parameter]:
@@ -18,6 +18,7 @@ def _lag(doc: str) -> tuple[Parameter]:
             starts=(0.06, 0.25, 0.9),
             scale=0.5,
             doc=doc,
+            usual=(0.3, 3.0),  # filling a diaphragm chamber through its tubing: tenths of a second to seconds
         ),
     )
 
@@ -30,17 +31,23 @@ def _before(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_TAU_BEFORE_S] = values[0]
 
 
+def _behind(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_LAG_S] = values[0]
+
+
 EFFECT = Effect(
     name="additional_lag",
     stage="actuator",
     claim="The motion is of higher order than one lag.",
-    equations="dv/dt = (w - v) / lag, dx/dt = (v - x) / tau; before: dq/dt = (p - q) / lag and w = play(q)",
+    equations="dv/dt = (w - v) / lag, dx/dt = (v - x) / tau; before: dq/dt = (p - q) / lag and w = play(q); "
+    "behind: dx/dt = (v - x) / lag, v as x in the design",
     source="Seborg, Edgar, Mellichamp, Process Dynamics and Control, 2nd ed. (Wiley 2004), ch. 6",
     forms=(
         Form("after_play", _lag("second time constant, between play and stem"), _after),
         Form("before_play", _lag("time constant between measured pressure and force"), _before),
+        Form("behind_stem", _lag("time constant between what the air moves, at its rate limit, and the stem"), _behind),
     ),
     twins=("sensor_lag", "dead_time"),
     absorbs=("tau",),
-    same_as={"after_play": ("sensor_lag",)},
+    same_as={"after_play": ("sensor_lag",), "behind_stem": ("sensor_lag",)},
 )

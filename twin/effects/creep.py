@@ -84,5 +84,5 @@ EFFECT = Effect(
         Form("pull_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _pull_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
     ),
-    absorbs=("compliance", "tau"),
+    absorbs=("compliance", "offset", "tau"),
 )

@@ -48,4 +48,5 @@ EFFECT = Effect(
         Form("overlap", _band("pressure error at which the pilot begins to open", True), _mode(3.0)),
         Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
     ),
+    erratic=True,
 )

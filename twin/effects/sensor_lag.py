@@ -17,7 +17,11 @@ def _twice(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _lag(doc: str) -> tuple[Parameter]:
-    return (Parameter(name="lag", kind="time", lower=0.0, upper=8.0, starts=(0.06, 0.25, 0.9), scale=0.5, doc=doc),)
+    # LVDT conditioners pass some 100 Hz; what is slower is the averaging of the converter behind: tenths of a second
+    lag = Parameter(
+        name="lag", kind="time", lower=0.0, upper=8.0, starts=(0.06, 0.25, 0.9), scale=0.5, doc=doc, usual=(0.1, 3.0)
+    )
+    return (lag,)
 
 
 EFFECT = Effect(

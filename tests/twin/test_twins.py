@@ -1,0 +1,67 @@
+"""Effects of the same signature: which of the two is named, and how sure that is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from twin.catalog import effect
+from twin.choose.decide import Decision, DecisionRules
+from twin.choose.twins import settled, with_usual_twins
+from twin.choose.usual import log_usual
+from twin.choose.weigh import Weights, weigh
+from twin.plant import Inserted, Plant
+
+
+@cache
+def late(lag_s: float) -> Decision:
+    """What the position says of a valve whose reading follows its stem late."""
+    lag = Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (lag_s,))
+    return judged(a_record(Plant(DesignModel(), (lag,))))[0].decisions[-1]
+
+
+@pytest.mark.parametrize(
+    ("lag_s", "name", "twin"), [(0.08, "sensor_lag", "additional_lag"), (0.8, "additional_lag", "sensor_lag")]
+)
+def test_of_twins_the_one_of_the_more_usual_size_is_named(lag_s: float, name: str, twin: str) -> None:
+    decision = settled(late(lag_s), DecisionRules(), Weights())
+    assert decision.names == (name,)
+    weighed = weigh(decision, Weights())
+    assert weighed.probability[name] == Weights().twin_ceiling
+    assert 0.1 < weighed.probability[twin] < weighed.probability[name]
+    assert weighed.sets == ((name, twin),)
+
+
+def test_what_the_record_says_comes_first() -> None:
+    decision = late(0.8)
+    believing = replace(Weights(), temperature=1e-9)
+    best = max(decision.findings.fits, key=decision.findings.score)
+    sure = replace(decision, accepted=best)
+    other = with_usual_twins(sure, believing)
+    assert decision.findings.score(other.accepted) >= decision.findings.score(best) - 1e-6
+
+
+def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:
+    decision = settled(late(0.8), DecisionRules(), Weights())
+    rivals = [f for f in decision.findings.fits if f.names == ("additional_lag",)]
+    assert len(rivals) == 1
+    cause = rivals[0].space.causes[0]
+    assert cause.form is not None and cause.form.name in effect("additional_lag").same_as
+
+
+def test_how_usual_a_size_is() -> None:
+    fits = {f.names[0]: f for f in late(0.8).findings.fits if len(f.names) == 1}
+    assert log_usual(fits["sensor_lag"]) < log_usual(fits["additional_lag"])  # 0.8 s is long for a filter
+    assert log_usual(fits["stiction"]) == 0.0  # nothing is known of it
+
+
+def test_creep_has_no_sharp_offset_beside_it() -> None:
+    """What gives way under the whole force has moved the curves too, by as much as has crept before the record."""
+    creep = Inserted("creep", effect("creep").form("force_tail"), (0.06, 40.0))
+    moved = DesignModel(a1=8.78 - 0.12, a2=5.82 - 0.12)
+    _, judgement = judged(a_record(Plant(moved, (creep,))))
+    assert [c.name for c in judgement.causes] == ["creep"]

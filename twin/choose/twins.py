@@ -1,0 +1,65 @@
+"""Which of two causes that no record can tell apart is named: the one whose size is the more usual.
+
+What is known of such a pair is known beforehand, from other machines: a filter behind a sensor is mostly short, a
+second lag of a valve mostly long. It weighs between twins only; everything else is decided by the record.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from twin.catalog import effects
+from twin.choose.decide import Decision, DecisionRules
+from twin.choose.trim import trimmed
+from twin.choose.usual import log_usual
+from twin.choose.weigh import Weights, twins_of
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Cause, make_space
+
+_ROUNDS = 8
+
+
+def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
+    """The decision with each cause replaced by its twin where that is the likelier by its size."""
+    for cause in decision.accepted.space.causes if decision.explained else ():
+        for twin in twins_of(decision.accepted, cause.name):
+            told, other = _with_twin(decision, cause, twin)
+            if _more_usual(told, other, weights):
+                decision = replace(told, accepted=other, rest=told.rest_of(other))
+                break
+    return decision
+
+
+def settled(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
+    """The decision without its unlikely causes, each of the others under its likelier name."""
+    return with_usual_twins(trimmed(decision, rules, weights), weights)
+
+
+def _with_twin(decision: Decision, cause: Cause, twin: str) -> tuple[Decision, Fit]:
+    """The decision that has also tried `twin` in the place of `cause`, in every form that is its twin.
+
+    Alone it was perhaps best in another form, which is all that the search goes on with. Returns the best hypothesis
+    with it too, which takes the place of any that was known.
+    """
+    accepted, effect = decision.accepted, effects()[twin]
+    fits = []
+    for form in effect.forms:
+        if cause.name in effect.same_as.get(form.name, ()):
+            causes = [Cause(twin, effect, form) if c is cause else c for c in accepted.space.causes]
+            space = make_space(accepted.space.base, causes, accepted.space.numbers, accepted.space.scales)
+            fits.append(fit(decision.findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS))
+    known = decision.findings.fits
+    best = max((f for f in (*known, *fits) if _same(f, decision, cause.name, twin)), key=decision.findings.score)
+    others = tuple(f for f in known if not _same(f, decision, cause.name, twin))
+    return replace(decision, findings=replace(decision.findings, fits=(*others, best))), best
+
+
+def _same(one: Fit, decision: Decision, name: str, twin: str) -> bool:
+    """Whether a hypothesis is the accepted one with `twin` in the place of `name`."""
+    return sorted(one.names) == sorted({*decision.names, twin} - {name})
+
+
+def _more_usual(decision: Decision, other: Fit, weights: Weights) -> bool:
+    """Whether what speaks for the size of `other` outweighs what the record says for the accepted cause."""
+    lead = decision.findings.score(decision.accepted) - decision.findings.score(other)
+    return log_usual(other) - log_usual(decision.accepted) > lead / weights.temperature
