@@ -118,7 +118,8 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     progress("held-out gap", 0.0)
     result, judgement, parts = hearing.held_out(result, known.judgement, progress)
     everything = replace(everything, decisions=result.decisions)
-    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, case.sigma_p is not None)
+    measured, wandering = case.sigma_p is not None, result.decisions[-1].floor
+    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, measured, wandering)
     known.judgement = judgement
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

@@ -96,13 +96,15 @@ def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, trave
 
 
 def upheld(
-    parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing, apart: bool
+    parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing, apart: bool, wandering: float = 1.0
 ) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
     A cause is not named for an error below the noise, nor when the model with it predicts no better; nor is a design
     without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
     needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
+    `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
+    prediction from the command leaves it too.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -116,7 +118,7 @@ def upheld(
     hardly = HARDLY if apart else SLIGHT
     if before <= hardly * floor or (vain and before < SLIGHT * floor):
         return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
-    if vain or _leaves(before, after, floor, judgement.causes, apart):
+    if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart):
         return _unexplained(parts, judgement)
     return parts, judgement
 

@@ -15,16 +15,14 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Form, Place
 from twin.kernels.ep import ep_kernel
-from twin.kernels.sensor import sensor_kernel, static_reading
+from twin.kernels.sensor import curvature, curved, sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
 from twin.slots import (
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     GRID,
-    S_BOW,
     S_GAIN,
     S_SEEN,
-    S_SWING,
     S_TRAVEL,
     S_ZERO,
     V_HIGH,
@@ -151,11 +149,10 @@ def core_at(c: Coefficients, reading: float) -> float:
     """Where the core stands when the static sensor reads `reading` at the start."""
     s = c.sensor
     x = (reading - s[S_ZERO]) / s[S_GAIN]
-    if s[S_BOW] != 0.0 or s[S_SWING] != 0.0:
-        for _ in range(4):  # the curve is a few percent: a fixed-point iteration settles at once
-            xi = x / s[S_TRAVEL]
-            bend = s[S_TRAVEL] * xi * (1.0 - xi) * (4.0 * s[S_BOW] + 10.4 * s[S_SWING] * (1.0 - 2.0 * xi))
-            x = (reading - s[S_ZERO]) / s[S_GAIN] - bend
+    if curved(s):
+        for _ in range(20):  # the curve is a few percent: a fixed-point iteration settles soon
+            near = min(max(x, -0.5 * s[S_TRAVEL]), 1.5 * s[S_TRAVEL])  # no curve holds far beyond the travel
+            x = (reading - s[S_ZERO]) / s[S_GAIN] - float(curvature(np.asarray(near), s))
     return float(x)
 
 

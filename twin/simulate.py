@@ -24,6 +24,8 @@ _LONGEST_S, _SHORTEST_S = 0.02, 0.002
 #: Rows over which the first readings are averaged, and how much better another play output must explain the start.
 _FIRST_ROWS = 5
 _BETTER = 0.8
+#: By which lag and rate limit of a design may be wrong.
+_OTHERWISE = (0.6, 0.67, 0.75, 0.83, 0.91, 1.0, 1.1, 1.2, 1.33, 1.5, 1.67)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,8 +88,7 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     stems = [position, stem_at(c, float(readings[0])), stem_at(c, _before(recording))]
     plays = np.linspace(0.0, plant.design.travel, 33).tolist()
     candidates = [rest, *(Start(float(pressure), x, w) for x in stems for w in (x, *plays))]
-    stop = int(np.searchsorted(recording.time_s, recording.time_s[0] + 2.0 * plant.design.tau_s)) + 2
-    head, cut = recording.slice(0, stop), TimeGrid(grid.time_s[:stop], grid.offsets[:stop])
+    head, cut = _head(plant, recording, grid)
     misses = [_miss(plant, head, cut, one) for one in candidates]
     best = int(np.argmin(misses))
     if misses[best] >= _BETTER * misses[0]:
@@ -98,11 +99,32 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
 def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | None:
     """The reading towards which the valve was moving before the first row, None where it stood still.
 
-    As a reading it holds for any gain and zero of the sensor that a hypothesis may have.
+    As a reading it holds for any gain and zero of the sensor that a hypothesis may have. It is not believed where a
+    valve at rest, with another lag or rate limit, moves off as well: the design's may be wrong.
     """
     start = start_of(plant, recording, grid)
-    c = plant.coefficients(recording.duration_s)
-    return reading_at(c, start.play) if start.play != start.position else None
+    if start.play == start.position or _rests(plant, recording, grid, start):
+        return None
+    return reading_at(plant.coefficients(recording.duration_s), start.play)
+
+
+def _rests(plant: Plant, recording: Recording, grid: TimeGrid, moving: Start) -> bool:
+    """Whether a start at rest explains the first seconds about as well as `moving`, with other numbers of the stem."""
+    head, cut = _head(plant, recording, grid)
+    rest, d = replace(moving, play=moving.position), plant.design
+    others = [
+        replace(plant, design=replace(d, tau_s=slower * d.tau_s, rate_limit=d.rate_limit / tighter))
+        for slower in _OTHERWISE
+        for tighter in _OTHERWISE
+    ]
+    least = min(_miss(other, head, cut, rest) for other in others)
+    return _miss(plant, head, cut, moving) >= _BETTER * least
+
+
+def _head(plant: Plant, recording: Recording, grid: TimeGrid) -> tuple[Recording, TimeGrid]:
+    """The first two lags of a recording."""
+    stop = int(np.searchsorted(recording.time_s, recording.time_s[0] + 2.0 * plant.design.tau_s)) + 2
+    return recording.slice(0, stop), TimeGrid(grid.time_s[:stop], grid.offsets[:stop])
 
 
 def _refined(start: Start, within: float, miss: Callable[[Start], float]) -> Start:

@@ -89,7 +89,10 @@ S_CYCLE_S = S_CORE + 1  # period of a zero that comes and goes [s]; 0: none
 S_CYCLE_COS = S_CORE + 2  # 1 - cos, and sin, of it [position]
 S_CYCLE_SIN = S_CORE + 3
 S_LAG2_S = S_CYCLE_SIN + 1  # a further lag behind the first
-S_COUNT = S_LAG2_S + 1
+S_LEAVES = S_LAG2_S + 1  # excess at the end of travel where the core leaves the linear range [fraction of travel]
+S_FROM = S_LEAVES + 1  # where that begins [fraction of travel]
+S_AT_OPEN = S_LEAVES + 2  # 1: at the open end
+S_COUNT = S_AT_OPEN + 1
 
 FOREVER = 1e30
 

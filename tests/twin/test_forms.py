@@ -29,6 +29,18 @@ def test_a_reading_bent_about_a_place_is_right_there(form: str, bend: float, xi:
     assert read == pytest.approx(DESIGN.travel * (xi + bend * shape), abs=1e-12)
 
 
+@pytest.mark.parametrize(
+    ("form", "way"), [("leaves_range_closed", lambda xi: xi), ("leaves_range_open", lambda xi: 1 - xi)]
+)
+def test_a_reading_is_straight_within_its_range_and_off_by_the_bend_at_the_end(form: str, way: object) -> None:
+    assert callable(way)
+    c = plant_with(("lvdt_nonlinearity", form, (-0.02, 0.6))).coefficients(1.0).sensor
+    for xi in (0.0, 0.2, 0.5, 0.8, 1.0):
+        beyond = max(way(xi) - 0.6, 0.0) / 0.4
+        read = static_reading(np.array([xi * DESIGN.travel]), np.zeros(1), c)[0]
+        assert read == pytest.approx(DESIGN.travel * (xi - 0.02 * beyond**2), abs=1e-12)
+
+
 def test_a_bent_reading_and_one_off_in_its_gain_add_up_in_any_order() -> None:
     bent, gain = ("lvdt_nonlinearity", "about_open", (0.05,)), ("lvdt_calibration", "gain", (0.03,))
     one, other = (plant_with(*order).coefficients(1.0).sensor for order in ((bent, gain), (gain, bent)))
@@ -77,3 +89,16 @@ def test_a_stop_that_moved_moves_for_a_stem_that_meets_it_at_speed(stop: str, fr
         assert reading[50:].min() >= low * DESIGN.travel - 1e-12
         assert reading.max() <= high * DESIGN.travel + 1e-12
         assert min(abs(reading[50:].min() / DESIGN.travel - low), abs(reading.max() / DESIGN.travel - high)) < 1e-9
+
+
+@pytest.mark.parametrize(("form", "beyond"), [("upper_seat", lambda xi: xi - 0.8), ("lower_seat", lambda xi: xi - 0.2)])
+def test_against_a_seat_only_a_share_of_the_compliance_is_left(form: str, beyond: object) -> None:
+    assert callable(beyond)
+    seated = plant_with(("reduced_travel", form, (0.2, 0.25))).coefficients(1.0)
+    first, step, closing, opening = curve_tables(seated)
+    grid = first + step * np.arange(closing.size)
+    within = (lambda xi: max(beyond(xi), 0.0)) if form == "upper_seat" else (lambda xi: min(beyond(xi), 0.0))
+    for start_psi, table in ((DESIGN.a1, closing), (DESIGN.a2, opening)):
+        for xi in (0.02, 0.1, 0.5, 0.9, 0.98):
+            needed = start_psi + DESIGN.travel / DESIGN.compliance * (xi + within(xi) * (1.0 / 0.25 - 1.0))
+            assert np.interp(needed, grid, table) == pytest.approx(xi * DESIGN.travel, abs=3e-3)

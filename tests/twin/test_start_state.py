@@ -15,8 +15,8 @@ from twin.catalog import effect
 from twin.fit.channel import predict_reading
 from twin.fit.trial import make_trial
 from twin.kernels.play import common_start
-from twin.plant import Inserted, Plant
-from twin.simulate import Start, moving_to, simulate_recording
+from twin.plant import Inserted, Plant, core_at, reading_at
+from twin.simulate import Start, moving_to, simulate_recording, start_of
 from twin.timegrid import make_grid
 
 DESIGN = DesignModel()
@@ -100,3 +100,21 @@ def test_where_a_valve_was_going_is_known_as_a_reading() -> None:
     trial = make_trial(part, 0.02, start_play=moving_to(Plant(DESIGN), part, make_grid(part.time_s, 0.02)))
     assert trial.start_play == pytest.approx(part.position[-1], abs=0.001 * DESIGN.travel)
     assert np.abs(predict_reading(plant, trial) - part.position).max() < 0.006 * DESIGN.travel
+
+
+def test_a_valve_that_moves_off_slower_than_designed_was_not_on_its_way_elsewhere() -> None:
+    """At rest at half of the travel; the command steps in the first row, and the stem goes at its own rate limit."""
+    slow = Plant(replace(DESIGN, rate_limit=0.6 * DESIGN.rate_limit))
+    rest = np.concatenate([np.full(300, 10.3), np.full(100, 9.0), np.full(60, 13.0)])
+    made = recorded(slow, rest)
+    part = made.slice(399, made.n)
+    grid = make_grid(part.time_s, 0.02)
+    assert start_of(Plant(DESIGN), part, grid).play != start_of(Plant(DESIGN), part, grid).position
+    assert moving_to(Plant(DESIGN), part, grid) is None
+
+
+@given(st.sampled_from(["leaves_range_closed", "leaves_range_open"]), st.floats(-0.04, 0.04), st.floats(0.3, 0.9))
+def test_where_the_core_stands_is_found_beyond_its_linear_range_too(form: str, bend: float, straight: float) -> None:
+    c = Plant(DESIGN, (inserted("lvdt_nonlinearity", form, bend, straight),)).coefficients(1.0)
+    for x in np.linspace(0.0, DESIGN.travel, 7):
+        assert core_at(c, reading_at(c, float(x))) == pytest.approx(x, abs=2e-4)

@@ -105,6 +105,12 @@ def test_how_much_may_be_left_of_a_clear_gap(names: tuple[str, ...], left: float
     assert (judgement.verdict == "effects") is kept
 
 
+@pytest.mark.parametrize(("wandering", "verdict"), [(1.0, "unexplained"), (1.8, "effect")])
+def test_what_nobody_knows_of_the_driving_pressure_may_be_left(wandering: float, verdict: str) -> None:
+    kept = upheld(parts(3.2, 3.0, 1.5), NAMED, 1.0, NOTHING_SEEN, True, wandering)[1]
+    assert kept.verdict == verdict
+
+
 def test_without_a_pressure_a_cause_before_it_counts_with_those_behind() -> None:
     both = tuple(Named(n, effect(n).stage, 0.9, None, {}) for n in ("creep", "dead_time"))
     found = Judgement("effects", both, (), ())

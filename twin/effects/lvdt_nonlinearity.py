@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_BOW, S_GAIN, S_SWING, S_TRAVEL, S_ZERO
+from twin.slots import S_AT_OPEN, S_BOW, S_FROM, S_GAIN, S_LEAVES, S_SWING, S_TRAVEL, S_ZERO
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -62,12 +62,36 @@ def _bent(c: Coefficients, gain: float, bow: float = 0.0, swing: float = 0.0, ze
     c.sensor[S_ZERO] += zero * c.sensor[S_TRAVEL]
 
 
+def _leaving(end: str) -> tuple[Parameter, Parameter]:
+    begins = Parameter(
+        name="range",
+        kind="fraction",
+        lower=0.2,
+        upper=0.9,
+        starts=(0.45, 0.75),
+        scale=0.2,
+        doc=f"share of the travel, from the other end, within which the reading is straight ({end} end)",
+        neutral=0.6,
+        size=False,
+    )
+    return _bend(end), begins
+
+
+def _leaves_closed(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_LEAVES, S_FROM]] = values
+
+
+def _leaves_open(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_LEAVES, S_FROM, S_AT_OPEN]] = values[0], 1.0 - values[1], 1.0
+
+
 EFFECT = Effect(
     name="lvdt_nonlinearity",
     stage="sensor",
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
-    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or (2 xi - 1)^3",
+    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or (2 xi - 1)^3; leaves_range_*: s is the square of "
+    "how far the core is beyond its linear range, as a share of what is left of the travel there",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -76,6 +100,8 @@ EFFECT = Effect(
         Form("about_open", (_bend("closed"),), _about_open),
         Form("about_closed", (_bend("open"),), _about_closed),
         Form("about_mid", (_bend("closed"),), _about_mid),
+        Form("leaves_range_closed", _leaving("closed"), _leaves_closed),
+        Form("leaves_range_open", _leaving("open"), _leaves_open),
     ),
     twins=("nonlinear_spring", "flow_force"),
     absorbs=("compliance", "offset"),

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
+from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
 
@@ -40,18 +43,52 @@ def _lower_hit(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_LOW] = min(c.valve[V_LOW], c.valve[V_HARD_LOW])
 
 
+def _seat(doc: str) -> tuple[Parameter, Parameter]:
+    begins = Parameter(name="missing", kind="fraction", lower=0.0, upper=0.2, starts=(0.03, 0.12), scale=0.1, doc=doc)
+    gives = Parameter(
+        name="give",
+        kind="fraction",
+        lower=0.02,
+        upper=0.95,
+        starts=(0.1, 0.4),
+        scale=0.3,
+        doc="compliance against the seat, as a share of the design's",
+        neutral=0.3,
+        size=False,
+    )
+    return begins, gives
+
+
+def _against(c: Coefficients, depth: FloatArray, give: float) -> None:
+    """What a seat takes that is pressed in by `depth` (fraction of travel, shape (GRID,)), on both curves."""
+    span = c.design.travel / c.design.compliance
+    shift = depth * span * (1.0 / give - 1.0)
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+def _upper_seat(c: Coefficients, values: Sequence[float]) -> None:
+    _against(c, np.maximum(c.xi - (1.0 - values[0]), 0.0), values[1])
+
+
+def _lower_seat(c: Coefficients, values: Sequence[float]) -> None:
+    _against(c, np.minimum(c.xi - values[0], 0.0), values[1])
+
+
 EFFECT = Effect(
     name="reduced_travel",
     stage="actuator",
     claim="An end stop is not where the design says.",
     equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower); hit: only x is held, "
-    "so the stem meets the stop at speed",
+    "so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is give times the design's",
     source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
     forms=(
         Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper),
         Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower),
         Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit),
         Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit),
+        Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
+        Form("lower_seat", _seat("fraction of travel within which the open end's seat is pressed in"), _lower_seat),
     ),
     twins=("lvdt_calibration",),
 )

@@ -14,6 +14,7 @@ from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import plain_play
 from twin.slots import (
     KNOTS,
+    S_AT_OPEN,
     S_BOW,
     S_CORE,
     S_CYCLE_COS,
@@ -22,12 +23,14 @@ from twin.slots import (
     S_DRIFT_AMP,
     S_DRIFT_RATE,
     S_DRIFT_TAU_S,
+    S_FROM,
     S_GAIN,
     S_HOLD_PHASE_S,
     S_HOLD_S,
     S_KNOTS,
     S_LAG2_S,
     S_LAG_S,
+    S_LEAVES,
     S_PLAY,
     S_STEP,
     S_SWING,
@@ -57,10 +60,7 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
 
 def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
     """Static curve of the reading plus its drifting zero [position]; `t` in s since the first row."""
-    y = x
-    if c[S_BOW] != 0.0 or c[S_SWING] != 0.0:
-        xi = x / c[S_TRAVEL]
-        y = y + c[S_TRAVEL] * xi * (1.0 - xi) * (4.0 * c[S_BOW] + 10.4 * c[S_SWING] * (1.0 - 2.0 * xi))
+    y = x + curvature(x, c) if curved(c) else x
     if c[S_GAIN] != 1.0 or c[S_ZERO] != 0.0:
         y = c[S_GAIN] * y + c[S_ZERO]
     if c[S_DRIFT_RATE] != 0.0:
@@ -73,6 +73,21 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
     if c[S_WANDER_S] > 0.0:
         y = y + _wandering(t, c)
     return y
+
+
+def curved(c: FloatArray) -> bool:
+    """Whether the reading is anything but proportional to the position."""
+    return bool(c[S_BOW] != 0.0 or c[S_SWING] != 0.0 or c[S_LEAVES] != 0.0)
+
+
+def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
+    """Excess of the reading over the position `x` [position], before gain and zero."""
+    xi = x / c[S_TRAVEL]
+    bend = xi * (1.0 - xi) * (4.0 * c[S_BOW] + 10.4 * c[S_SWING] * (1.0 - 2.0 * xi))
+    if c[S_LEAVES] != 0.0:
+        way, reach = (c[S_FROM] - xi, c[S_FROM]) if c[S_AT_OPEN] != 0.0 else (xi - c[S_FROM], 1.0 - c[S_FROM])
+        bend = bend + c[S_LEAVES] * np.square(np.maximum(way, 0.0) / reach)
+    return np.asarray(c[S_TRAVEL] * bend)
 
 
 def _wandering(t: FloatArray, c: FloatArray) -> FloatArray:
