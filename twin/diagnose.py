@@ -30,7 +30,7 @@ from twin.partial import Interrupted, Known, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
-from twin.rounding import rounding_down
+from twin.rounding import lacking_codes, rounding_down
 from twin.sensing import Sensing, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
 from twin.thin import look_at, on_everything
@@ -155,13 +155,13 @@ def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Cas
     design = plant.design
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     inserted = (*plant.inserted, *rounding_down(recordings, plant, sensing))
-    seen = (sensing.bad_rows, noise, sensing.step, _held(recordings, sensing), settings.doubt)
+    seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), settings.doubt)
     case = make_case(recordings, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)
     late, late_notes = late_commands(look_at(known.case)[0])
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
-    known.notes += [*late_notes, *look_notes]
+    known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing)]
     return case, look, sensing, tuple(late)
 
 

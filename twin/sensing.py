@@ -19,6 +19,7 @@ from twin.effect import Scales
 from twin.events.dropouts import SIGMAS
 from twin.events.evidence import Evidence
 from twin.events.scan import Events, scan_events
+from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted
 
@@ -38,11 +39,20 @@ _SINGLE, _STILL_SIGMAS = 5, 5.0
 
 @dataclass(frozen=True, slots=True)
 class Sensing:
-    """Events of all recordings. `accepted`: estimates of every accepted event effect; `step`: the resolution."""
+    """Events of all recordings. `accepted`: estimates of every accepted event effect; `step`: the resolution.
+
+    `uneven`: by how much more codes that never occur make the reading err.
+    """
 
     events: tuple[Events, ...]
     accepted: dict[str, dict[str, Estimate]]
     step: float
+    uneven: float = 1.0
+
+    @property
+    def coarseness(self) -> float:
+        """The step whose rounding would make as large an error [position]."""
+        return self.uneven * self.step
 
     def inserted(self) -> tuple[Inserted, ...]:
         """What of the accepted events a model can repeat: the resolution of the reading."""
@@ -82,7 +92,12 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     stale = _strongest(events, "stale_samples")
     if stale.found and stale.log_likelihood_ratio > _HELD_NATS and stale.estimates["hold_fraction"].value > _HELD:
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
-    return Sensing(events, accepted, step)
+    return Sensing(events, accepted, step, _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0)
+
+
+def _uneven(recordings: Sequence[Recording], step: float) -> float:
+    """RMS of the rounding error over that of a converter with all its codes."""
+    return float(np.sqrt(12.0 * rounding_error(np.concatenate([r.position for r in recordings]), step)))
 
 
 def _loud(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:

@@ -64,7 +64,8 @@ V_TARGET_STICKS = 31  # 1: what sticks is the target, when it slows down; the st
 V_AGING_S = 32  # time at rest after which 1 - 1/e of the breakaway is there; 0: at once [s]
 V_TRAVEL = 33  # travel over which forces are given that depend on where the stem is [position]
 V_TARGET_CREEPS = 34  # 1: what creeps is the target of the stem, before its lag, its rate limit and its stops
-V_COUNT = 35
+V_SHORT = 35  # how far friction holds the stem from its target at no speed; falls as V_STRIBECK_SPEED says [position]
+V_COUNT = 36
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

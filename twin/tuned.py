@@ -41,7 +41,7 @@ def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignMode
     noise = estimate_noise(pieces)
     design = replace(design, travel=travel_between_stops(pieces, design) or design.travel)
     sensing = sense(pieces, noise, design.travel, design.rate_limit)
-    look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.step))
+    look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.coarseness))
     if look.sigma_p is None:
         return retuned_fit(look).plant.design
     first = _fitted(look, pressure_channel(look.trials, look.sigma_p))

@@ -63,3 +63,22 @@ def test_the_breakaway_grows_at_rest() -> None:
     pressure = levels((MIDDLE - 1.0, 0.5), (MIDDLE, 3.0), (MIDDLE + 0.2, 40.0))
     young = float(stem("grows_at_rest", (0.3, 10.0), pressure, 0.05)[-1])
     assert abs(young - (0.25 + 0.2 * K)) < 2e-3  # after 3 s only 0.08 psi
+
+
+def test_friction_that_grows_as_the_stem_slows_down_keeps_it_short_of_its_target() -> None:
+    up = stem("short_of_target", (0.06, 1e-2, 0.0), levels((MIDDLE, 90.0)), 0.0)
+    assert abs(up[-1] - (0.25 - 0.06 * K)) < 1e-4
+    further = levels((MIDDLE, 90.0), (MIDDLE + 0.05, 30.0), (MIDDLE + 0.2, 90.0))
+    path = stem("short_of_target", (0.06, 1e-2, 0.0), further, 0.0)
+    assert abs(path[2390] - (path[1790] + 0.05 * K)) < 1e-4  # it hangs at its friction, and follows what exceeds it
+    assert abs(path[-1] - (0.25 + (0.2 - 0.06) * K)) < 1e-4
+    back = stem("short_of_target", (0.06, 1e-2, 0.0), levels((MIDDLE, 90.0), (DESIGN.a2 + 0.1 / K, 90.0)), 0.0)
+    assert abs(back[-1] - (0.1 + 0.06 * K)) < 1e-4
+
+
+def test_friction_that_falls_at_once_leaves_a_fast_stem_alone() -> None:
+    pressure = levels((MIDDLE, 1.0))
+    free = stem("short_of_target", (0.0, 1e-3, 0.0), pressure, 0.0)
+    fast = stem("short_of_target", (0.06, 1e-3, 0.0), pressure, 0.0)
+    assert np.abs(fast - free).max() < 0.06 * K
+    assert np.abs(np.diff(fast[10:]) - np.diff(free[10:])).max() < 1e-4

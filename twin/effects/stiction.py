@@ -10,10 +10,12 @@ from twin.slots import (
     V_AGING_S,
     V_BREAKAWAY,
     V_HELD,
+    V_SHORT,
     V_STICK_SPEED,
     V_STRIBECK,
     V_STRIBECK_SPEED,
     V_TARGET_STICKS,
+    V_TAU_AFTER_S,
 )
 
 #: Speed of the target below which it rests where friction grows with the time at rest, as a share of the rate limit.
@@ -76,6 +78,18 @@ _FALL_SPEED = Parameter(
     size=False,
 )
 
+_INERTIA = Parameter(
+    name="inertia",
+    kind="time",
+    lower=0.0,
+    upper=0.06,
+    starts=(0.02,),
+    scale=0.03,
+    doc="mass of the moving parts over their damping: how late the speed follows",
+    neutral=0.02,
+    size=False,
+)
+
 
 def _slip_until_slow(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_BREAKAWAY] = values[0]
@@ -109,6 +123,13 @@ def _held_stem(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_STICK_SPEED] = values[1]
 
 
+def _short(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_SHORT] = values[0] * c.design.compliance
+    c.valve[V_STRIBECK_SPEED] = values[1]
+    if values[0] > 0.0:
+        c.valve[V_TAU_AFTER_S] += values[2]
+
+
 EFFECT = Effect(
     name="stiction",
     stage="actuator",
@@ -116,7 +137,8 @@ EFFECT = Effect(
     equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed, and "
     "has to break away the other way in any case; target_sticks: the target w itself sticks below the stick speed, and "
     "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
-    "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed)",
+    "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
+    "short_of_target: what pulls the stem is |w - x| less k s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4549; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck, growth at rest)",
     forms=(
@@ -126,8 +148,9 @@ EFFECT = Effect(
         Form("one_jump", (_BREAKAWAY,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
+        Form("short_of_target", (_BREAKAWAY, _FALL_SPEED, _INERTIA), _short),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),
-    absorbs=("deadband",),
+    absorbs=("deadband", "tau"),
     erratic=True,
 )

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 import numpy.typing as npt
 
-from logs.recording import Recording
+from logs.recording import FloatArray, Recording
 from twin.diagnosis import Estimate
 from twin.events.delay import delay
 from twin.events.dropouts import find_dropouts
 from twin.events.evidence import Evidence, nothing
 from twin.events.stale import stale_samples
 from twin.events.stickslip import stick_slip
-from twin.noise.lattice import lattice_step
+from twin.noise.lattice import lattice_step, missing_codes, rounding_error
 from twin.noise.model import NoiseModel
 
 _MATERIAL = 0.25  # of the floor's variance
@@ -38,7 +38,7 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
     """Tests one recording for stale samples, drop-outs, quantization, stick-slip and dead time."""
     position, pressure = recording.position, recording.pressure
     sigma = noise.position.sigma
-    drop = find_dropouts(position, sigma)
+    drop = find_dropouts(position, max(sigma, _coarse(position)))
     clean = np.where(drop.rows, np.nan, position)
     step = lattice_step(clean)
     quantization, share = _quantization(step, sigma, recording.position_unit)
@@ -60,6 +60,14 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
         memory = noise.pressure.correlation_samples
         evidence["dead_time"] = delay(recording.time_s, recording.command, true_pressure, noise.pressure.sigma, memory)
     return Events(evidence, drop.rows, false_pressure, share)
+
+
+def _coarse(position: FloatArray) -> float:
+    """RMS error of a reading that lacks codes: from one that it has to the next is no false reading. 0 without."""
+    step = lattice_step(position)
+    if step is None or missing_codes(position, step)[0] == 0:
+        return 0.0
+    return step * float(np.sqrt(rounding_error(position, step)))
 
 
 def _quantization(step: float | None, sigma: float, unit: str) -> tuple[Evidence, float]:

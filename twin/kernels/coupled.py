@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.inputs import Bends, Grown, Plays, Tables
 from twin.slots import (
     FOREVER,
     V_AGING_S,
@@ -19,6 +20,7 @@ from twin.slots import (
     V_IN_MOTION,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_SHORT,
     V_STICK_SPEED,
     V_STRIBECK,
     V_STRIBECK_SPEED,
@@ -29,14 +31,6 @@ from twin.slots import (
     V_TRAVEL,
     V_WEAR,
 )
-
-#: First pressure, step, closing and opening curve; and the spreads and weights of the elements.
-Tables = tuple[float, float, FloatArray, FloatArray]
-Plays = tuple[FloatArray, FloatArray]
-#: Over the stem's position, 0 .. travel: extra pressure (closing, opening), relative compliance; single points: none.
-Bends = tuple[FloatArray, FloatArray, FloatArray]
-#: What the half deadband grows by (closing, opening), compliance relative to the design's.
-Grown = tuple[float, float, float]
 
 _SAME = 1e-9
 
@@ -153,11 +147,17 @@ def _move(
     w: float,
     after: float,
     stuck: bool,
+    speed: float,
 ) -> tuple[float, float, bool]:
     """Stem, lagged play output and whether it sticks, after `h` seconds in which it moves toward `new_w`."""
     new_after = _toward(after, w, new_w, lags[2, 0], lags[2, 1])
     way = 0 if after + new_after > 2.0 * x else 1  # a row of `lags` taken out would count references
-    new = _toward(x, after, new_after, lags[way, 0], lags[way, 1])
+    pulls, will_pull = after, new_after
+    if c[V_SHORT] > 0.0:
+        short = c[V_SHORT] * np.exp(-speed / c[V_STRIBECK_SPEED])
+        pulls -= max(-short, min(short, after - x))
+        will_pull -= max(-short, min(short, new_after - x))
+    new = _toward(x, pulls, will_pull, lags[way, 0], lags[way, 1])
     new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
     new = max(stops[2], min(stops[3], new))
     if c[V_HELD] > 0.0:
@@ -239,7 +239,7 @@ def coupled_steps(
                 slipped = slipped or slips
                 elements[j] = e
                 new_w += weights[j] * e
-            new, after, stuck = _move(h, new_w, slipped, c, stops, lags, x, w, after, stuck)
+            new, after, stuck = _move(h, new_w, slipped, c, stops, lags, x, w, after, stuck, speed)
             speed, travelled = abs(new - x) / h, travelled + abs(new - x)
             rested, toward = rested + h if stuck else 0.0, new - x if new != x else toward
             x, w = new, new_w

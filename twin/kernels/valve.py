@@ -9,7 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.coupled import Bends, Plays, Tables, coupled_start, coupled_steps
+from twin.kernels.coupled import coupled_start, coupled_steps
+from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.stem import stem_pass
@@ -33,6 +34,7 @@ from twin.slots import (
     V_OUTER_SLOPE,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_SHORT,
     V_STEP,
     V_STEP_TIME_S,
     V_STRIBECK,
@@ -45,7 +47,7 @@ from twin.slots import (
     stem_stops,
 )
 
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD]
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT]
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from logs.recording import FloatArray
 
 _LEAST_LEVELS = 8
 _FIT = 0.12  # rms distance from the lattice in steps: values without a lattice have 0.29
 _MOST = 200_000
+#: Readings of each of the codes around one that never occurs, from which that is no chance (0.1 % by Poisson).
+_OFTEN = 7.0
 
 
 def lattice_step(values: FloatArray) -> float | None:
@@ -45,3 +48,48 @@ def _fitted(gaps: FloatArray, candidate: float) -> float | None:
     apart = place - slope * index
     apart -= np.median(apart)
     return slope if float(np.median(np.abs(apart))) < _FIT * slope else None
+
+
+def missing_codes(values: FloatArray, step: float) -> tuple[int, int]:
+    """(codes that never occur although those on both sides often do, codes between the lowest and the highest)."""
+    counts = _counts(values, step)
+    return int(np.count_nonzero(_missing(counts))), counts.size
+
+
+def rounding_error(values: FloatArray, step: float) -> float:
+    """Mean squared error of rounding to the codes that occur, in squares of the step: 1/12 where none is missing.
+
+    What belongs to a missing code is read as the one below or above it, all of it off by a step or more.
+    """
+    widths = _widths(values, step)
+    return float(np.sum(widths * (widths**2 / 12.0 + (widths - 1.0) ** 2 / 4.0)) / np.sum(widths))
+
+
+def rounding_bias(values: FloatArray, step: float) -> float:
+    """Mean by which readings are too low, in steps, where what belongs to a missing code is read as the one below."""
+    widths = _widths(values, step)
+    return float(np.sum(widths * (widths - 1.0) / 2.0) / np.sum(widths))
+
+
+def _widths(values: FloatArray, step: float) -> FloatArray:
+    """Distances in steps from each code that is not missing to the next; a lattice of one code has one step."""
+    present = np.flatnonzero(~_missing(_counts(values, step)))
+    return np.diff(present).astype(np.float64) if present.size > 1 else np.ones(1)
+
+
+def _counts(values: FloatArray, step: float) -> npt.NDArray[np.int64]:
+    """How often each code occurs, from the lowest to the highest."""
+    seen = values[np.isfinite(values)]
+    codes = np.round((seen - seen.min()) / step).astype(np.int64)
+    return np.bincount(codes[codes < _MOST])
+
+
+def _missing(counts: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
+    """Codes that do not occur where the two on either side do, often."""
+    missing: npt.NDArray[np.bool_] = np.zeros(counts.size, dtype=np.bool_)
+    if counts.size < 5:
+        return missing
+    below, above = counts[:-4] + counts[1:-3], counts[3:-1] + counts[4:]
+    often = (below + above >= 4.0 * _OFTEN) & (np.minimum(below, above) >= _OFTEN)
+    missing[2:-2] = (counts[2:-2] == 0) & often
+    return missing
