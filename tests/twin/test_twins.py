@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from control.design import DesignModel
@@ -15,6 +16,7 @@ from twin.choose.twins import settled, with_usual_twins
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, weigh
 from twin.plant import Inserted, Plant
+from twin.simulate import simulate_recording
 
 
 @cache
@@ -65,3 +67,28 @@ def test_creep_has_no_sharp_offset_beside_it() -> None:
     moved = DesignModel(a1=8.78 - 0.12, a2=5.82 - 0.12)
     _, judgement = judged(a_record(Plant(moved, (creep,))))
     assert [c.name for c in judgement.causes] == ["creep"]
+
+
+def test_twins_of_whose_sizes_nothing_is_known_stay_as_the_record_has_them() -> None:
+    bow = Inserted("nonlinear_spring", effect("nonlinear_spring").form("bow"), (0.3,))
+    decision = judged(a_record(Plant(DesignModel(), (bow,))))[0].decisions[-1]
+    assert decision.names == ("nonlinear_spring",)
+    assert with_usual_twins(decision, replace(Weights(), temperature=1e9)) is decision
+
+
+def test_a_lag_of_the_stem_and_one_of_the_sensor_add_up_in_any_order() -> None:
+    filtered = Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (0.2,))
+    late_stem = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.5,))
+    record = a_record(Plant(DesignModel()))
+    readings = {
+        names: simulate_recording(Plant(DesignModel(), parts), record)[1]
+        for names, parts in {
+            "both": (filtered, late_stem),
+            "turned": (late_stem, filtered),
+            "stem": (late_stem,),
+            "sensor": (filtered,),
+        }.items()
+    }
+    assert np.array_equal(readings["both"], readings["turned"])
+    for alone in ("stem", "sensor"):
+        assert np.abs(readings["both"] - readings[alone]).max() > 0.005

@@ -22,7 +22,7 @@ _ROUNDS = 8
 def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
     """The decision with each cause replaced by its twin where that is the likelier by its size."""
     for cause in decision.accepted.space.causes if decision.explained else ():
-        for twin in twins_of(decision.accepted, cause.name):
+        for twin in filter(_of_known_size, twins_of(decision.accepted, cause.name)):
             told, other = _with_twin(decision, cause, twin)
             if _more_usual(told, other, weights):
                 decision = replace(told, accepted=other, rest=told.rest_of(other))
@@ -33,6 +33,11 @@ def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
 def settled(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision without its unlikely causes, each of the others under its likelier name."""
     return with_usual_twins(trimmed(decision, rules, weights), weights)
+
+
+def _of_known_size(name: str) -> bool:
+    """Whether anything is known of the sizes of an effect on other machines."""
+    return any(p.usual is not None for form in effects()[name].forms for p in form.parameters)
 
 
 def _with_twin(decision: Decision, cause: Cause, twin: str) -> tuple[Decision, Fit]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_LAG_S, V_TAU_AFTER_S, V_TAU_BEFORE_S
+from twin.slots import S_LAG2_S, V_TAU_AFTER_S, V_TAU_BEFORE_S
 
 
 def _lag(doc: str) -> tuple[Parameter]:
@@ -32,7 +32,7 @@ def _before(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _behind(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_LAG_S] = values[0]
+    c.sensor[S_LAG2_S] = values[0]
 
 
 EFFECT = Effect(

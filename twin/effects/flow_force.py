@@ -28,6 +28,19 @@ def _force(doc: str) -> tuple[Parameter]:
     )
 
 
+_WITHIN = Parameter(
+    name="within",
+    kind="fraction",
+    lower=0.02,
+    upper=0.6,
+    starts=(0.06, 0.25),
+    scale=0.1,
+    doc="opening over which the force falls to 1/e",
+    neutral=0.12,
+    size=False,
+)
+
+
 def _push(c: Coefficients, shape: FloatArray) -> None:
     # Without its straight line: that part re-tunes offset and compliance and says nothing about the fluid.
     shift = detrended(shape, c.xi)
@@ -65,17 +78,23 @@ def _at_seat(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
 
 
+def _suction(c: Coefficients, values: Sequence[float]) -> None:
+    _push(c, values[0] * np.exp(-(1.0 - c.xi) / values[1]))
+
+
 EFFECT = Effect(
     name="flow_force",
     stage="actuator",
     claim="Fluid through the valve pushes the plug, depending on opening.",
     equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
-    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12); stem_*: f of the stem x, with its line",
+    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12), suction: "
+    "exp(-opening/within); stem_*: f of the stem x, with its line",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5; Borden (ed.), Control Valves (ISA 1998)",
     forms=(
         Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
         Form("near_seat", _force("peak of the force at 12 % opening, as pressure"), _near_seat),
         Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
+        Form("suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _suction),
         Form("stem_linear", _force("force at closed, growing in proportion to closure, as pressure"), _stem_linear),
         Form("stem_square", _force("force at closed, growing with the square of closure, as pressure"), _stem_square),
         Form("stem_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _stem_seat),
@@ -83,5 +102,7 @@ EFFECT = Effect(
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
     odds=0.05,  # most benches are dry
     absorbs=("compliance", "offset"),
-    same_as=dict.fromkeys(("throttling", "near_seat", "at_seat", "stem_square", "stem_seat"), ("nonlinear_spring",)),
+    same_as=dict.fromkeys(
+        ("throttling", "near_seat", "at_seat", "suction", "stem_square", "stem_seat"), ("nonlinear_spring",)
+    ),
 )

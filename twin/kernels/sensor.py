@@ -46,7 +46,7 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
         plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
-    if c[S_LAG_S] > 0.0:
+    if max(c[S_LAG_S], c[S_LAG2_S]) > 0.0:
         t = elapsed_s(time_s, offsets)
         late = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])
         out[:] = lagged(time_s, offsets, late, c[S_LAG2_S])[offsets]

@@ -44,7 +44,7 @@ class Sensor:
             self._core = float(core[-1])
             stem = core
         t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
-        if c[S_LAG_S] > 0.0:
+        if max(c[S_LAG_S], c[S_LAG2_S]) > 0.0:
             late = self._lag.follow(time_s, offsets, self._static(stem, t))
             value = float(self._further.follow(time_s, offsets, late)[-1])
         else:

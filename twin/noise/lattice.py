@@ -80,8 +80,11 @@ def _widths(values: FloatArray, step: float) -> FloatArray:
 def _counts(values: FloatArray, step: float) -> npt.NDArray[np.int64]:
     """How often each code occurs, from the lowest to the highest."""
     seen = values[np.isfinite(values)]
-    codes = np.round((seen - seen.min()) / step).astype(np.int64)
-    return np.bincount(codes[codes < _MOST])
+    if not seen.size:
+        return np.zeros(0, dtype=np.int64)
+    codes = np.round((seen - np.quantile(seen, 0.001, method="nearest")) / step)  # a false reading may be anywhere
+    codes = codes[np.abs(codes) < _MOST].astype(np.int64)
+    return np.bincount(codes - codes.min())
 
 
 def _missing(counts: npt.NDArray[np.int64]) -> npt.NDArray[np.bool_]:
