@@ -78,6 +78,15 @@ _FALL_SPEED = Parameter(
     size=False,
 )
 
+_SHORT = Parameter(
+    name="breakaway",
+    kind="pressure",
+    lower=0.0,
+    upper=4.0,
+    starts=(0.01, 0.05, 0.2, 0.8),
+    scale=0.6,
+    doc="pressure by which friction at no speed exceeds that at full speed",
+)
 _INERTIA = Parameter(
     name="inertia",
     kind="time",
@@ -148,7 +157,7 @@ EFFECT = Effect(
         Form("one_jump", (_BREAKAWAY,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
-        Form("short_of_target", (_BREAKAWAY, _FALL_SPEED, _INERTIA), _short),
+        Form("short_of_target", (_SHORT, _FALL_SPEED, _INERTIA), _short),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),
     absorbs=("deadband", "tau"),
