@@ -160,7 +160,7 @@ def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: f
     rows = np.arange(recording.n)
     filled = np.interp(rows, rows[known], recording.position[known])
     reach = 2.5 * fastest * recording.period_s + 8.0 * noise.position.sigma
-    far = known & (np.abs(filled - median_filter(filled, 7, mode="nearest")) > reach)
+    far = known & (np.abs(filled - median_filter(filled, 7, mode="mirror")) > reach)
     return replace(events, false_position=events.false_position | far)
 
 

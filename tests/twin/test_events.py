@@ -93,6 +93,13 @@ def test_false_readings_are_found_where_they_are() -> None:
     assert found.evidence.found
 
 
+@pytest.mark.parametrize("row", [0, -1])
+def test_a_false_reading_at_an_end_of_the_record_is_found(row: int) -> None:
+    position = record(Toy(), COMMAND, DT, 5, SIGMA).position.copy()
+    position[row] += 0.3
+    assert np.flatnonzero(find_dropouts(position, SIGMA).rows).tolist() == [row % position.size]
+
+
 def test_tips_of_motion_are_no_false_readings() -> None:
     command = np.tile([12.5] * 25 + [4.0] * 25, 30).astype(float)  # the stem turns round in full motion
     moving = record(Toy(tau_s=0.5, rate=1.0), command, DT, 3, SIGMA)

@@ -47,7 +47,8 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     if known.sum() < 3 * _WINDOW:
         return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
     y = reading[known]
-    apart = y - median_filter(y, _WINDOW, mode="nearest")
+    # mirrored at the ends: a false first reading would otherwise be most of its own neighbours
+    apart = y - median_filter(y, _WINDOW, mode="mirror")
     sigma = max(noise_sigma, 1e-12)
     bound = SIGMAS * sigma
     false = _isolated(y, np.abs(apart) > bound, bound)
@@ -77,13 +78,16 @@ def _isolated(y: FloatArray, far: BoolArray, bound: float) -> BoolArray:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], far, [False]]).astype(np.int8)))
     starts, stops = edges[::2], edges[1::2]
     before, after = y[np.maximum(starts - 1, 0)], y[np.minimum(stops, y.size - 1)]
+    # at an end of the record there is one neighbour only, and it decides; what happens beyond nobody knows
+    before, after = np.where(starts == 0, after, before), np.where(stops == y.size, before, after)
     away, back = y[starts] - before, y[stops - 1] - after
     steps = np.abs(np.diff(y, prepend=y[:1]))
-    usual = median_filter(steps, 2 * _WINDOW + 1, mode="nearest")
-    # at an end of the record there is one neighbour only, and it decides
-    away, back = np.where(starts == 0, back, away), np.where(stops == y.size, away, back)
+    usual = median_filter(steps, 2 * _WINDOW + 1, mode="nearest")[starts]
+    usual = np.where(starts == 0, steps[2 : _WINDOW + 2].max(), usual)
+    usual = np.where(stops == y.size, steps[-_WINDOW - 1 : -1].max(), usual)
+    single = (stops - starts == 1) | ((starts > 0) & (stops < y.size))
     jump = np.minimum(np.abs(away), np.abs(back))
-    good = (stops - starts <= _LONGEST) & (away * back > 0.0) & (jump > np.maximum(bound, _JUMP * usual[starts]))
+    good = (stops - starts <= _LONGEST) & (away * back > 0.0) & (jump > np.maximum(bound, _JUMP * usual)) & single
     good &= np.abs(after - before) < np.maximum(0.5 * jump, bound)
     marked = np.zeros(y.size, dtype=bool)
     for start, stop in zip(starts[good], stops[good], strict=True):
