@@ -41,6 +41,14 @@ def test_a_reading_is_straight_within_its_range_and_off_by_the_bend_at_the_end(f
         assert read == pytest.approx(DESIGN.travel * (xi - 0.02 * beyond**2), abs=1e-12)
 
 
+@given(st.floats(-0.1, 0.1), st.floats(0.0, 1.0), st.floats(0.0, 1.0))
+def test_a_cubic_reading_with_part_of_its_line(bend: float, line: float, xi: float) -> None:
+    c = plant_with(("lvdt_nonlinearity", "cubic", (bend, line))).coefficients(1.0).sensor
+    u = 2.0 * xi - 1.0
+    read = static_reading(np.array([xi * DESIGN.travel]), np.zeros(1), c)[0]
+    assert read == pytest.approx(DESIGN.travel * (xi + bend * (u**3 - line * u)), abs=1e-12)
+
+
 def test_a_bent_reading_and_one_off_in_its_gain_add_up_in_any_order() -> None:
     bent, gain = ("lvdt_nonlinearity", "about_open", (0.05,)), ("lvdt_calibration", "gain", (0.03,))
     one, other = (plant_with(*order).coefficients(1.0).sensor for order in ((bent, gain), (gain, bent)))

@@ -28,6 +28,19 @@ def _bend(end: str) -> Parameter:
     return _parameter("bend", f"excess of the reading at fully {end}, fraction of travel")
 
 
+_LINE = Parameter(
+    name="line",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.6,),
+    scale=0.3,
+    doc="share of its line that the calibration took out: 0.6 by least squares, 1 by the ends",
+    neutral=0.6,
+    size=False,
+)
+
+
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_BOW] = values[0]
 
@@ -54,6 +67,12 @@ def _about_closed(c: Coefficients, values: Sequence[float]) -> None:
 def _about_mid(c: Coefficients, values: Sequence[float]) -> None:
     """(2 xi - 1)^3 is 2 xi - 1 and a swing."""
     _bent(c, gain=2.0 * values[0], swing=values[0] * 4.0 / 10.4, zero=-values[0])
+
+
+def _cubic(c: Coefficients, values: Sequence[float]) -> None:
+    """u^3 less a part of its line, u = 2 xi - 1: which line a calibration has put through the curve nobody says."""
+    bend, line = values
+    _bent(c, gain=2.0 * bend * (1.0 - line), swing=bend * 4.0 / 10.4, zero=-bend * (1.0 - line))
 
 
 def _bent(c: Coefficients, gain: float, bow: float = 0.0, swing: float = 0.0, zero: float = 0.0) -> None:
@@ -90,8 +109,8 @@ EFFECT = Effect(
     stage="sensor",
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
-    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or (2 xi - 1)^3; leaves_range_*: s is the square of "
-    "how far the core is beyond its linear range, as a share of what is left of the travel there",
+    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: s = u^3 - line u; leaves_range_*: "
+    "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -100,6 +119,7 @@ EFFECT = Effect(
         Form("about_open", (_bend("closed"),), _about_open),
         Form("about_closed", (_bend("open"),), _about_closed),
         Form("about_mid", (_bend("closed"),), _about_mid),
+        Form("cubic", (_bend("closed"), _LINE), _cubic),
         Form("leaves_range_closed", _leaving("closed"), _leaves_closed),
         Form("leaves_range_open", _leaving("open"), _leaves_open),
     ),
