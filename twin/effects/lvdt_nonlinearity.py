@@ -109,7 +109,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
-    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: s = u^3 - line u; leaves_range_*: "
+    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: u^3 - line u; leaves_range_*: "
     "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(
