@@ -41,7 +41,7 @@ class SearchRules:
     paired: int = 6  # pairs that get a full fit because their moves add up well, from each point that is looked from
     screened: int = 5  # further causes per hypothesis of the beam that get a full fit,
     forms: int = 3  # each in so many forms at the most
-    reformed: int = 6  # pairs whose members are tried in their other forms,
+    reformed: int = 8  # pairs whose members are tried in their other forms,
     reform_share: float = 0.002  # where the likeliest pair leaves more than this share of what the design leaves,
     bent: float = 4.0  # or moves its design numbers by more than this (squares of their priors' deviations)
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
