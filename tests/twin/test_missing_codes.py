@@ -17,6 +17,8 @@ from twin.events.scan import scan_events
 from twin.noise.lattice import missing_codes, rounding_bias, rounding_error
 from twin.noise.model import estimate_noise
 from twin.plant import Plant
+from twin.rounding import rounding_down
+from twin.sensing import sense
 
 STEP = 0.004
 
@@ -53,3 +55,12 @@ def test_nothing_else_is_named_for_missing_codes(every: int) -> None:
     diagnosis = diagnose([record], DesignModel()).diagnosis
     assert [c.name for c in diagnosis.causes] == ["sensor_quantization"]
     assert any("codes of the position never occur" in note.what for note in diagnosis.data_quality)
+
+
+@pytest.mark.parametrize("up", [False, True])
+def test_the_error_of_the_zero_that_missing_codes_make_is_no_calibration(up: bool) -> None:
+    made = a_record(Plant(DesignModel()))
+    record = replace(made, position=read(made.position, 3, up))
+    sensing = sense([record], estimate_noise([record]), DesignModel().travel, DesignModel().rate_limit)
+    (found,) = rounding_down([record], Plant(DesignModel()), sensing)
+    assert found.values == pytest.approx(((1.0 if up else -1.0) * STEP / 3.0,), rel=0.2)  # codes at the ends are unsure

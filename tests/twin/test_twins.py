@@ -11,10 +11,12 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.catalog import effect
+from twin.choose.claims import together
 from twin.choose.decide import Decision, DecisionRules
 from twin.choose.twins import settled, with_usual_twins
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, weigh
+from twin.fit.space import Cause
 from twin.plant import Inserted, Plant
 from twin.simulate import simulate_recording
 
@@ -67,6 +69,9 @@ def test_creep_has_no_sharp_offset_beside_it() -> None:
     moved = DesignModel(a1=8.78 - 0.12, a2=5.82 - 0.12)
     _, judgement = judged(a_record(Plant(moved, (creep,))))
     assert [c.name for c in judgement.causes] == ["creep"]
+    form = Cause("creep", effect("creep"), effect("creep").form("force_tail"))
+    assert not together(form, Cause("parameter:offset"))
+    assert together(form, Cause("parameter:rate_limit"))
 
 
 def test_twins_of_whose_sizes_nothing_is_known_stay_as_the_record_has_them() -> None:
