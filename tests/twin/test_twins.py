@@ -13,7 +13,7 @@ from tests.twin.judged import a_record, judged
 from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import Decision, DecisionRules
-from twin.choose.twins import settled, with_usual_twins
+from twin.choose.twins import _more_usual, settled, with_usual_twins
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, weigh
 from twin.fit.space import Cause
@@ -42,11 +42,12 @@ def test_of_twins_the_one_of_the_more_usual_size_is_named(lag_s: float, name: st
 
 def test_what_the_record_says_comes_first() -> None:
     decision = late(0.8)
-    believing = replace(Weights(), temperature=1e-9)
-    best = max(decision.findings.fits, key=decision.findings.score)
-    sure = replace(decision, accepted=best)
-    other = with_usual_twins(sure, believing)
-    assert decision.findings.score(other.accepted) >= decision.findings.score(best) - 1e-6
+    fits = {f.names[0]: f for f in decision.findings.fits if len(f.names) == 1}
+    short, long = fits["sensor_lag"], fits["additional_lag"]
+    accepted = replace(decision, accepted=short)
+    alike, unlike = (replace(long, residuals=share * short.residuals) for share in (1.0, 1.2))
+    assert _more_usual(accepted, alike, Weights())
+    assert not _more_usual(accepted, unlike, Weights())
 
 
 def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:

@@ -12,7 +12,7 @@ from twin.catalog import effects
 from twin.choose.decide import Decision, DecisionRules
 from twin.choose.trim import trimmed
 from twin.choose.usual import log_usual
-from twin.choose.weigh import Weights, twins_of
+from twin.choose.weigh import Weights, stands_in, twins_of
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 
@@ -54,14 +54,10 @@ def _with_twin(decision: Decision, cause: Cause, twin: str) -> tuple[Decision, F
             space = make_space(accepted.space.base, causes, accepted.space.numbers, accepted.space.scales)
             fits.append(fit(decision.findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS))
     known = decision.findings.fits
-    best = max((f for f in (*known, *fits) if _same(f, decision, cause.name, twin)), key=decision.findings.score)
-    others = tuple(f for f in known if not _same(f, decision, cause.name, twin))
+    alike = [f for f in (*known, *fits) if stands_in(f, accepted, cause.name, twin)]
+    best = max(alike, key=decision.findings.score)
+    others = tuple(f for f in known if not stands_in(f, accepted, cause.name, twin))
     return replace(decision, findings=replace(decision.findings, fits=(*others, best))), best
-
-
-def _same(one: Fit, decision: Decision, name: str, twin: str) -> bool:
-    """Whether a hypothesis is the accepted one with `twin` in the place of `name`."""
-    return sorted(one.names) == sorted({*decision.names, twin} - {name})
 
 
 def _more_usual(decision: Decision, other: Fit, weights: Weights) -> bool:

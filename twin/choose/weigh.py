@@ -61,10 +61,14 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
 def _usual(accepted: Fit, fit: Fit) -> float:
     """What the size of a twin that stands in the place of an accepted cause has for itself, in nats."""
     for name in accepted.names:
-        twins = [t for t in twins_of(accepted, name) if sorted(fit.names) == sorted({*accepted.names, t} - {name})]
-        if twins:
+        if any(stands_in(fit, accepted, name, twin) for twin in twins_of(accepted, name)):
             return log_usual(fit) - log_usual(accepted)
     return 0.0
+
+
+def stands_in(fit: Fit, accepted: Fit, name: str, twin: str) -> bool:
+    """Whether a hypothesis is the accepted one with `twin` in the place of `name`."""
+    return sorted(fit.names) == sorted({*accepted.names, twin} - {name})
 
 
 def _comparable(decision: Decision) -> list[Fit]:

@@ -74,12 +74,12 @@ def _stem_seat(c: Coefficients, values: Sequence[float]) -> None:
     _push_stem(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
 
 
-def _at_seat(c: Coefficients, values: Sequence[float]) -> None:
-    _push(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
-
-
 def _suction(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * np.exp(-(1.0 - c.xi) / values[1]))
+
+
+def _at_seat(c: Coefficients, values: Sequence[float]) -> None:
+    _suction(c, (values[0], PEAK))
 
 
 EFFECT = Effect(

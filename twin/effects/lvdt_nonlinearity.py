@@ -65,12 +65,14 @@ def _about_closed(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _about_mid(c: Coefficients, values: Sequence[float]) -> None:
-    """(2 xi - 1)^3 is 2 xi - 1 and a swing."""
-    _bent(c, gain=2.0 * values[0], swing=values[0] * 4.0 / 10.4, zero=-values[0])
+    _cubic(c, (values[0], 0.0))
 
 
 def _cubic(c: Coefficients, values: Sequence[float]) -> None:
-    """u^3 less a part of its line, u = 2 xi - 1: which line a calibration has put through the curve nobody says."""
+    """u^3 less a part of its line, u = 2 xi - 1: which line a calibration has put through the curve nobody says.
+
+    u^3 is u and a swing.
+    """
     bend, line = values
     _bent(c, gain=2.0 * bend * (1.0 - line), swing=bend * 4.0 / 10.4, zero=-bend * (1.0 - line))
 

@@ -38,9 +38,10 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
     """Tests one recording for stale samples, drop-outs, quantization, stick-slip and dead time."""
     position, pressure = recording.position, recording.pressure
     sigma = noise.position.sigma
-    drop = find_dropouts(position, max(sigma, _coarse(position)))
+    step = lattice_step(position)
+    drop = find_dropouts(position, max(sigma, _coarse(position, step)))
     clean = np.where(drop.rows, np.nan, position)
-    step = lattice_step(clean)
+    step = lattice_step(clean) if drop.rows.any() else step
     quantization, share = _quantization(step, sigma, recording.position_unit)
     evidence = {
         "sensor_dropouts": drop.evidence,
@@ -62,9 +63,8 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
     return Events(evidence, drop.rows, false_pressure, share)
 
 
-def _coarse(position: FloatArray) -> float:
+def _coarse(position: FloatArray, step: float | None) -> float:
     """RMS error of a reading that lacks codes: from one that it has to the next is no false reading. 0 without."""
-    step = lattice_step(position)
     if step is None or missing_codes(position, step)[0] == 0:
         return 0.0
     return step * float(np.sqrt(rounding_error(position, step)))
