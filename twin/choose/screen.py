@@ -76,16 +76,23 @@ class Screen:
         return [(z[self.z.size :], self._direction(self.channel.residuals(space.plant(z)))) for z in ends]
 
     def _direction(self, moved: FloatArray) -> FloatArray:
-        direction = np.zeros(self.r.size)
-        direction[: moved.size] = moved - self.r[: moved.size]
+        direction = self._way(moved)
         rest: FloatArray = direction - self.basis @ (self.basis.T @ direction)
         return rest
 
+    def _way(self, moved: FloatArray) -> FloatArray:
+        """The direction before the unknowns follow."""
+        way = np.zeros(self.r.size)
+        np.subtract(moved, self.r[: moved.size], out=way[: moved.size])
+        return way
+
     def _gain(self, moved: FloatArray) -> float:
         """How much of the squares the direction toward `moved` could take away; 0 if it leads away."""
-        direction = self._direction(moved)
-        length = float(direction @ direction)
-        along = -float(self.r @ direction)
+        # The length of what `_direction` leaves; `r` has nothing along the basis, so `along` needs no following.
+        way = self._way(moved)
+        followed = self.basis.T @ way
+        length = max(float(way @ way - followed @ followed), 0.0)
+        along = -float(self.r @ way)
         if length <= 0.0 or along <= 0.0:
             return 0.0
         size = min(along / length, _LARGEST)

@@ -32,7 +32,7 @@ class Minimum:
 
 def jacobian(residuals: Residuals, z: FloatArray, r: FloatArray, steps: FloatArray, upper: FloatArray) -> FloatArray:
     """Forward differences, backward where the upper bound is near; shape (n, len(z))."""
-    columns = np.empty((r.size, z.size))
+    columns = np.empty((r.size, z.size), order="F")
     for k, step in enumerate(steps):
         signed = -step if z[k] + step > upper[k] else step
         moved = z.copy()

@@ -2,7 +2,8 @@
 
 Friction inside the force balance, breakaway with a stick speed, friction that falls with speed, wear with distance,
 forces that depend on where the stem is (not on where it is pulled to).
-The small functions stand here once more on purpose: a compiled cache notices edits of its own file only.
+The small functions stand here once more on purpose: a compiled cache notices edits of its own file only. They are given
+numbers, no arrays: what an array is handed to counts references, each step, which cost more than all the physics.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.kernels.inputs import Bends, Grown, Plays, Tables
+from twin.kernels.inputs import Bends, Plays, Tables
 from twin.slots import (
     FOREVER,
     V_AGING_S,
@@ -44,19 +45,17 @@ def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
     return value
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
-def _decays(h: float, c: FloatArray, lags: FloatArray) -> None:
-    """Fills `lags` (shape (3, 2)): decay over `h` and tau / h, of the lags closing, opening and after the play."""
-    for k, slot in enumerate((V_TAU_CLOSE_S, V_TAU_OPEN_S, V_TAU_AFTER_S)):
-        lags[k, 0] = np.exp(-h / c[slot]) if c[slot] > 1e-9 else 0.0
-        lags[k, 1] = c[slot] / h if c[slot] > 1e-9 else 0.0
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _decay(h: float, tau_s: float) -> tuple[float, float]:
+    """Decay of a lag over `h`, and tau / h."""
+    return (np.exp(-h / tau_s), tau_s / h) if tau_s > 1e-9 else (0.0, 0.0)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _toward(x: float, w_a: float, w_b: float, decay: float, reach: float) -> float:
+def _toward(x: float, w_a: float, w_b: float, lag: tuple[float, float]) -> float:
     """Exact step of a lag for an input linear from w_a to w_b."""
-    slope_tau = (w_b - w_a) * reach
-    new: float = w_b - slope_tau + (x - w_a + slope_tau) * decay
+    slope_tau = (w_b - w_a) * lag[1]
+    new: float = w_b - slope_tau + (x - w_a + slope_tau) * lag[0]
     return new
 
 
@@ -81,25 +80,22 @@ def _unheld(free: float, held: float, inside: bool, ends: tuple[float, float]) -
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _element(
     e: float,
-    down: float,
-    up: float,
-    softer: float,
+    free: tuple[float, float],
+    held: tuple[float, float],
     extra: tuple[float, float],
     modes: tuple[bool, bool],
     ends: tuple[float, float],
-    grid: tuple[float, float],
-    closing: FloatArray,
-    opening: FloatArray,
 ) -> tuple[float, bool]:
-    """Where an element goes that closes at pressure `down` and opens at `up`, and whether it slipped.
+    """Where an element goes between its curves (closing, opening), `free` and as the breakaway holds it, and whether it
+    slipped.
 
     `extra`: what it takes to start (closing, opening). `modes`: whether it jumps, and whether only what lies inside
-    the stops pulls. `ends`: the stops. `grid`: first pressure and points per pressure of the curves.
+    the stops pulls. `ends`: the stops.
     """
-    bottom, top = softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening)
+    bottom, top = free
     if extra[0] > 0.0 or extra[1] > 0.0:
-        low = _unheld(bottom, softer * _curve_at(down - extra[0], grid, closing), modes[1], ends)
-        high = _unheld(top, softer * _curve_at(up + extra[1], grid, opening), modes[1], ends)
+        low = _unheld(bottom, held[0], modes[1], ends)
+        high = _unheld(top, held[1], modes[1], ends)
         if low <= e <= high:
             return e, False
         if modes[0] and extra[0] > 0.0:
@@ -109,62 +105,22 @@ def _element(
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _half_band(
-    wide: float, x: float, speed: float, c: FloatArray, closing: FloatArray, opening: FloatArray, softer: FloatArray
-) -> Grown:
-    """What is added to the half deadband now, by wear (in `wide`), speed and place; and the compliance there."""
-    grown = wide
-    if c[V_STRIBECK] > 0.0:
-        grown += c[V_STRIBECK] * np.exp(-speed / c[V_STRIBECK_SPEED])
-    if closing.size == 1:
-        return grown, grown, 1.0
-    grid = (0.0, (closing.size - 1) / c[V_TRAVEL])
-    return grown + _curve_at(x, grid, closing), grown - _curve_at(x, grid, opening), _curve_at(x, grid, softer)
-
-
-@njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _breakaway(stuck: bool, toward: float, rested: float, c: FloatArray) -> tuple[float, float]:
+def _breakaway(stuck: bool, toward: float, rested: float, force: float, aging_s: float) -> tuple[float, float]:
     """What it takes beyond sliding friction to close and to open now.
 
     A stem that moves passes rest before it can move the other way: there it has to break away again.
     """
-    extra = c[V_BREAKAWAY]
-    if c[V_AGING_S] > 0.0:
-        extra *= 1.0 - np.exp(-rested / c[V_AGING_S])
+    extra = force
+    if aging_s > 0.0:
+        extra *= 1.0 - np.exp(-rested / aging_s)
     slides = 0.0 if stuck else toward
     return 0.0 if slides > 0.0 else extra, 0.0 if slides < 0.0 else extra
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _move(
-    h: float,
-    new_w: float,
-    slipped: bool,
-    c: FloatArray,
-    stops: FloatArray,
-    lags: FloatArray,
-    x: float,
-    w: float,
-    after: float,
-    stuck: bool,
-    speed: float,
-) -> tuple[float, float, bool]:
-    """Stem, lagged play output and whether it sticks, after `h` seconds in which it moves toward `new_w`."""
-    new_after = _toward(after, w, new_w, lags[2, 0], lags[2, 1])
-    way = 0 if after + new_after > 2.0 * x else 1  # a row of `lags` taken out would count references
-    pulls, will_pull = after, new_after
-    if c[V_SHORT] > 0.0:
-        short = c[V_SHORT] * np.exp(-speed / c[V_STRIBECK_SPEED])
-        pulls -= max(-short, min(short, after - x))
-        will_pull -= max(-short, min(short, new_after - x))
-    new = _toward(x, pulls, will_pull, lags[way, 0], lags[way, 1])
-    new = max(x - c[V_RATE_OPEN] * h, min(x + c[V_RATE_CLOSE] * h, new))
-    new = max(stops[2], min(stops[3], new))
-    if c[V_HELD] > 0.0:
-        slipped = abs(new_after - x) > c[V_HELD]
-        new = x if stuck and not slipped else new
-    deciding = abs(new_w - w) if c[V_TARGET_STICKS] != 0.0 else abs(new - x)
-    return new, new_after, (stuck and not slipped) or deciding < c[V_STICK_SPEED] * h
+def _left(target: float, x: float, kept: float) -> float:
+    """The target that is left of one when friction keeps so much of its pull on a stem at `x`."""
+    return target - max(-kept, min(kept, target - x))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -182,13 +138,17 @@ def coupled_start(
     grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
     elements = np.full(plays[0].size, start[1])
     x = max(stops[2], min(stops[3], start[0]))
-    more, less, softer = _half_band(wide, x, 0.0, c, bends[0], bends[1], bends[2])
+    more = less = wide + (c[V_STRIBECK] if c[V_STRIBECK] > 0.0 else 0.0)
+    softer = 1.0
+    if bends[0].size > 1:
+        place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
+        more, less = more + _curve_at(x, place, bends[0]), less - _curve_at(x, place, bends[1])
+        softer = _curve_at(x, place, bends[2])
     w = 0.0
     for j in range(elements.size):
-        down, up = force - plays[0][j] - more, force + plays[0][j] + less
-        elements[j], _ = _element(
-            elements[j], down, up, softer, (0.0, 0.0), (False, False), ends, grid, tables[2], tables[3]
-        )
+        bottom = softer * _curve_at(force - plays[0][j] - more, grid, tables[2])
+        top = softer * _curve_at(force + plays[0][j] + less, grid, tables[3])
+        elements[j] = max(ends[0], min(ends[1], max(bottom, min(top, elements[j]))))
         w += plays[1][j] * elements[j]
     return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER]), elements
 
@@ -213,36 +173,56 @@ def coupled_steps(
     `state`: stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck
     [s].
     """
-    # Arrays are taken out of their tuples, and out of other arrays, once: in the loop it would count references.
+    # Arrays are taken out of their tuples, and numbers out of arrays, once: in the loop it would count references.
     grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
     spreads, weights = plays
     more_at, less_at, softer_at = bends
-    ends, varies = (stops[0], stops[1]), widening.size > 1
-    modes = (c[V_STICK_SPEED] >= FOREVER, c[V_TARGET_STICKS] != 0.0)
+    bent, place = more_at.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    ends, lowest, highest, varies = (stops[0], stops[1]), stops[2], stops[3], widening.size > 1
+    breakaway, aging_s, kept, stick_speed = c[V_BREAKAWAY], c[V_AGING_S], c[V_HELD], c[V_STICK_SPEED]
+    modes = (stick_speed >= FOREVER, c[V_TARGET_STICKS] != 0.0)
+    stribeck, short, fading = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED]
+    wear, in_motion, rate_close, rate_open = c[V_WEAR], c[V_IN_MOTION], c[V_RATE_CLOSE], c[V_RATE_OPEN]
     x, w, after, stuck = state[0], state[1], state[2], state[3] != 0.0
     speed, toward, travelled, rested = state[4], state[5], state[6], state[7]
     out[0] = x
-    last_h, lags = -1.0, np.zeros((3, 2))
+    last_h, slows, opens, lates = -1.0, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
             last_h = h
-            _decays(h, c, lags)
+            slows, opens, lates = _decay(h, c[V_TAU_CLOSE_S]), _decay(h, c[V_TAU_OPEN_S]), _decay(h, c[V_TAU_AFTER_S])
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            wide = widening[f if varies else 0] + c[V_WEAR] * travelled
-            more, less, softer = _half_band(wide, x, speed, c, more_at, less_at, softer_at)
-            extra, carried = _breakaway(stuck, toward, rested, c), c[V_IN_MOTION] * (x - w)
+            fades = np.exp(-speed / fading) if stribeck > 0.0 or short > 0.0 else 0.0
+            more, softer = widening[f if varies else 0] + wear * travelled + stribeck * fades, 1.0
+            less = more
+            if bent:
+                more, less = more + _curve_at(x, place, more_at), less - _curve_at(x, place, less_at)
+                softer = _curve_at(x, place, softer_at)
+            extra, carried = _breakaway(stuck, toward, rested, breakaway, aging_s), in_motion * (x - w)
             new_w, slipped = 0.0, False
             for j in range(elements.size):
                 down, up = force[f] - spreads[j] - more, force[f] + spreads[j] + less
-                e, slips = _element(elements[j] + carried, down, up, softer, extra, modes, ends, grid, closing, opening)
+                free = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
+                held = free
+                if breakaway > 0.0:
+                    low, high = _curve_at(down - extra[0], grid, closing), _curve_at(up + extra[1], grid, opening)
+                    held = (softer * low, softer * high)
+                elements[j], slips = _element(elements[j] + carried, free, held, extra, modes, ends)
                 slipped = slipped or slips
-                elements[j] = e
-                new_w += weights[j] * e
-            new, after, stuck = _move(h, new_w, slipped, c, stops, lags, x, w, after, stuck, speed)
+                new_w += weights[j] * elements[j]
+            new_after = _toward(after, w, new_w, lates)
+            pulls, will_pull = _left(after, x, short * fades), _left(new_after, x, short * fades)
+            new = _toward(x, pulls, will_pull, slows if after + new_after > 2.0 * x else opens)
+            new = max(lowest, min(highest, max(x - rate_open * h, min(x + rate_close * h, new))))
+            if kept > 0.0:
+                slipped = abs(new_after - x) > kept
+                new = x if stuck and not slipped else new
+            deciding = abs(new_w - w) if modes[1] else abs(new - x)
+            stuck = (stuck and not slipped) or deciding < stick_speed * h
             speed, travelled = abs(new - x) / h, travelled + abs(new - x)
             rested, toward = rested + h if stuck else 0.0, new - x if new != x else toward
-            x, w = new, new_w
+            x, w, after = new, new_w, new_after
             out[f] = x
     state[0], state[1], state[2], state[3] = x, w, after, 1.0 if stuck else 0.0
     state[4], state[5], state[6], state[7] = speed, toward, travelled, rested
