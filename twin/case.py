@@ -15,7 +15,7 @@ from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.places import places
 from twin.plant import Inserted, Plant
-from twin.refresh import fresh_rows
+from twin.refresh import freshness
 from twin.simulate import moving_to
 from twin.timegrid import make_grid
 
@@ -128,7 +128,7 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
     step_s = fine_step_s(base.design, recording)
     play = moving_to(base, recording, make_grid(recording.time_s, step_s))
-    return make_trial(recording, step_s, bad, play, fresh_rows(recording.position) if held else None)
+    return make_trial(recording, step_s, bad, play, freshness(recording) if held else None)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:

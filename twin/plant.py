@@ -9,7 +9,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-import numpy.typing as npt
 
 from control.design import DesignModel
 from logs.recording import FloatArray
@@ -17,10 +16,12 @@ from twin.effect import Coefficients, Form, Place
 from twin.kernels.ep import ep_kernel
 from twin.kernels.sensor import curvature, curved, sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
+from twin.refresh import Freshness
 from twin.slots import (
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     GRID,
+    S_EARLY,
     S_GAIN,
     S_SEEN,
     S_TRAVEL,
@@ -100,16 +101,17 @@ def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: flo
     return out
 
 
-def reading_response(
-    c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: npt.NDArray[np.intp] | None = None
-) -> FloatArray:
+def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: Freshness | None = None) -> FloatArray:
     """Reading at the rows, shape (n,), from the stem on the fine grid.
 
-    `fresh`: the row in which each row's recorded reading was new, for effects that go by it.
+    `fresh`: how fresh each row's recorded reading is, for effects that go by it.
     """
+    mode, taken_s = (0.0 if fresh is None else c.sensor[S_SEEN]), None
+    if fresh is not None and mode == 2.0:
+        taken_s = np.maximum(fresh.taken_s - c.sensor[S_EARLY] * fresh.slack_s, 0.0)
     out = np.empty(grid.time_s.size)
-    sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out)
-    return out if fresh is None or c.sensor[S_SEEN] == 0.0 else out[fresh]
+    sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)
+    return out[fresh.rows] if fresh is not None and mode == 1.0 else out
 
 
 def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]:

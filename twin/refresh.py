@@ -15,6 +15,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray, Recording
+from twin.clock import clock_of
 
 #: Width of the smooth, in rows; refreshes much slower than this are smooth themselves.
 _WIDTHS = (4.0, 16.0)
@@ -29,6 +30,33 @@ class Refresh:
 
     period_s: float
     phase: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Freshness:
+    """Of each row's reading, shapes (n,): the row in which it was new, and when it was taken, at the latest.
+
+    `taken_s`: since the first row, by the converter's own clock where it has one; up to `slack_s` earlier is possible.
+    """
+
+    rows: npt.NDArray[np.intp]
+    taken_s: FloatArray
+    slack_s: float
+
+    def kept(self, rows: npt.NDArray[np.intp], time_s: FloatArray) -> Freshness:
+        """The same for some rows of the recording (increasing); `time_s`: of all its rows."""
+        new = np.maximum(self.rows[rows], rows[0])
+        at = np.asarray(np.searchsorted(rows, new, side="right") - 1)
+        return Freshness(at, self.taken_s[rows] - float(time_s[rows[0]] - time_s[0]), self.slack_s)
+
+
+def freshness(recording: Recording) -> Freshness:
+    """How fresh each row's reading is, as far as the readings tell."""
+    rows, t = fresh_rows(recording.position), recording.time_s - recording.time_s[0]
+    clock = clock_of(recording.time_s, recording.position)
+    if clock is not None:
+        return Freshness(rows, clock.taken_s(t), clock.slack_s)
+    return Freshness(rows, t[rows], float(np.median(np.diff(t))))  # new since the row before
 
 
 def refreshes(time_s: FloatArray, reading: FloatArray) -> list[Refresh]:

@@ -13,7 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from logs.recording import DataNote, Recording
+from logs.recording import DataNote, FloatArray, Recording
 from twin.catalog import effect
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.trial import make_trial
@@ -40,14 +40,28 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
     channel = chain_channel(trials, 1.0)
     form = effect("lvdt_calibration").form("zero")
     lacking = rounding_bias(np.concatenate([r.position for r in recordings]), sensing.step)
-    groups = [channel.use] if lacking > 0.0 else _telling_rows(channel, plant, sensing.step)
-    off = [s for s in (-0.5, 0.5, -lacking, lacking) if s != 0.0]
-    options = [(), *((Inserted("lvdt_calibration", form, (s * sensing.step,)),) for s in off)]
-    errors = [channel.residuals(Plant(plant.design, (*plant.inserted, *o))) for o in options]
-    misfits = [float(np.mean([np.mean(e[rows] ** 2) for rows in groups])) for e in errors]
+    offs_in = [s * sensing.step for s in (0.0, -0.5, 0.5, -lacking, lacking)][: 5 if lacking > 0.0 else 3]
+    options = [(Inserted("lvdt_calibration", form, (off_in,)),) if off_in else () for off_in in offs_in]
+    stops = _telling_rows(channel, plant, sensing.step) if lacking == 0.0 else []
+    if stops:
+        # the model of another zero would start elsewhere, and stay there as long as the pressure lets it
+        error = channel.residuals(plant)
+        errors = [np.array([np.mean(error[rows]) - off_in for rows in stops]) for off_in in offs_in]
+    else:
+        whole = [channel.residuals(Plant(plant.design, (*plant.inserted, *o)))[channel.use] for o in options]
+        errors = whole if lacking > 0.0 else [_beyond(e, 0.5 * sensing.step) for e in whole]
+    misfits = [float(np.mean(e**2)) for e in errors]
     best = min(range(len(options)), key=lambda k: misfits[k])
-    near = abs(float(np.mean([np.mean(errors[best][rows]) for rows in groups]))) < 0.5 * _NEARLY * sensing.step
+    near = (stops or lacking > 0.0) and abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
     return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
+
+
+def _beyond(error: FloatArray, half: float) -> FloatArray:
+    """What is left of errors that rounding alone may make as large as `half`.
+
+    A stem that rests at few places has rounding errors of any mean; none is larger than half a step.
+    """
+    return np.asarray(np.maximum(np.abs(error) - half, 0.0))
 
 
 def lacking_codes(recordings: Sequence[Recording], sensing: Sensing) -> list[DataNote]:
@@ -62,11 +76,11 @@ def lacking_codes(recordings: Sequence[Recording], sensing: Sensing) -> list[Dat
 
 
 def _telling_rows(channel: Channel, plant: Plant, step: float) -> list[npt.NDArray[np.bool_]]:
-    """For each stop that was visited long enough, the rows at which model and reading are there; else all."""
+    """For each stop that was visited long enough, the rows at which model and reading are there."""
     model, near = channel.prediction(plant), _AT_STOP * step
     groups = []
     for stop in (0.0, plant.design.travel):
         rows = channel.use & (np.abs(model - stop) < 0.1 * near) & (np.abs(channel.measured - stop) < near)
         if np.count_nonzero(rows) >= _ENOUGH:
             groups.append(rows)
-    return groups or [channel.use]
+    return groups

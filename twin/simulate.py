@@ -13,8 +13,8 @@ from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.insert import inserted_from, plant_of
 from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
-from twin.refresh import fresh_rows
-from twin.slots import S_CORE
+from twin.refresh import freshness
+from twin.slots import S_CORE, S_SEEN
 from twin.timegrid import TimeGrid, make_grid
 
 __all__ = ["Start", "inserted_from", "plant_of", "simulate_recording", "start_of", "step_for"]
@@ -67,7 +67,8 @@ def simulate_recording(
     pressure = pressure_response(c, grid, recording.command, first.pressure)
     stem = stem_response(c, grid, pressure, first.position, first.play)
     c.sensor[S_CORE] = first.core
-    return pressure[grid.offsets], reading_response(c, grid, stem, fresh_rows(recording.position))
+    fresh = freshness(recording) if c.sensor[S_SEEN] else None
+    return pressure[grid.offsets], reading_response(c, grid, stem, fresh)
 
 
 def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:

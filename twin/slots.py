@@ -84,7 +84,7 @@ S_TRAVEL = 12  # travel that bow and swing refer to [position]
 S_WANDER_S = 13  # time between the knots of a wandering zero [s]; 0: it does not wander
 S_KNOTS = 14  # the zero at each of the knots after the start [position]
 KNOTS = 10
-S_SEEN = S_KNOTS + KNOTS  # 1: the reading is refreshed when the recorded one is seen to be
+S_SEEN = S_KNOTS + KNOTS  # 1: the reading is new when the recorded one is; 2: by the converter's clock that shows in it
 S_CORE = S_SEEN + 1  # where the core of a loose linkage stands at the start [position]; not a number: at the stem
 S_CYCLE_S = S_CORE + 1  # period of a zero that comes and goes [s]; 0: none
 S_CYCLE_COS = S_CORE + 2  # 1 - cos, and sin, of it [position]
@@ -93,7 +93,8 @@ S_LAG2_S = S_CYCLE_SIN + 1  # a further lag, of the sensor or of the stem it sit
 S_LEAVES = S_LAG2_S + 1  # excess at the end of travel where the core leaves the linear range [fraction of travel]
 S_FROM = S_LEAVES + 1  # where that begins [fraction of travel]
 S_AT_OPEN = S_LEAVES + 2  # 1: at the open end
-S_COUNT = S_AT_OPEN + 1
+S_EARLY = S_AT_OPEN + 1  # how early that clock ticks, of what it leaves open [1]
+S_COUNT = S_EARLY + 1
 
 FOREVER = 1e30
 

@@ -18,6 +18,7 @@ from twin.case import Case, Span, fine_step_s
 from twin.effect import Place
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
+from twin.refresh import Freshness
 from twin.simulate import moving_to
 from twin.stages import StageResult, drive_by_measured
 from twin.timegrid import make_grid
@@ -152,12 +153,9 @@ def _later(whole: Trial, first: int) -> Place:
     return replace(place, since_s=since_s, span_s=place.span_s or whole_s, within_s=within_s, whole_s=whole_s)
 
 
-def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> npt.NDArray[np.intp] | None:
-    """For each kept row the kept row, at or before, in which its reading was new."""
-    if whole.fresh is None:
-        return None
-    new = np.maximum(whole.fresh[span.start : span.stop][rows] - span.start, rows[0])
-    return np.asarray(np.searchsorted(rows, new, side="right") - 1)
+def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> Freshness | None:
+    """How fresh the readings of the kept rows are."""
+    return None if whole.fresh is None else whole.fresh.kept(rows + span.start, whole.recording.time_s)
 
 
 def _led_in(trial: Trial, lead_s: float) -> Trial:

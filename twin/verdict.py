@@ -98,8 +98,8 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
         sizes = estimates(decision.accepted, decision.findings.phi)
         for candidate in decision.accepted.space.causes:
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
-            parameters = {label: estimate for (_, label), estimate in own.items()}
-            parameters = parameters or sensing.accepted.get(candidate.name, {})
+            fitted = {label: estimate for (_, label), estimate in own.items()}
+            parameters = dict(sensing.accepted.get(candidate.name, {})) | fitted
             seen = _EVENT_PROBABILITY if candidate.name in sensing.accepted else 0.0
             probability = max(weight.probability[candidate.name], seen)
             causes.append(Cause(candidate.name, candidate.stage, probability, None, parameters))

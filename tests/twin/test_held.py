@@ -81,7 +81,7 @@ def test_a_look_at_part_of_the_rows_knows_when_they_were_fresh(stale: Recording)
     rows = np.searchsorted(long.time_s, trial.recording.time_s)
     whole = fresh_rows(long.position)
     for k in range(0, rows.size, 97):
-        assert trial.fresh[k] == max(j for j in range(k + 1) if rows[j] <= max(whole[rows[k]], rows[0]))
+        assert trial.fresh.rows[k] == max(j for j in range(k + 1) if rows[j] <= max(whole[rows[k]], rows[0]))
 
 
 def test_one_slow_converter_for_both_signals_is_told_from_a_slow_position(stale: Recording) -> None:

@@ -9,7 +9,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.refresh import refreshes
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_SEEN
+from twin.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN
 
 _PERIOD = Parameter(
     name="period",
@@ -33,6 +33,17 @@ _PHASE = Parameter(
     size=False,
 )
 
+_EARLY = Parameter(
+    name="early",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.5,),
+    scale=0.3,
+    doc="how early the refreshes are, of what the rows leave open about them",
+    size=False,
+)
+
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_HOLD_S] = values[0]
@@ -41,6 +52,10 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
 
 def _as_seen(c: Coefficients, _values: Sequence[float]) -> None:
     c.sensor[S_SEEN] = 1.0
+
+
+def _own_clock(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_SEEN, S_EARLY]] = 2.0, values[0]
 
 
 def _seen(time_s: FloatArray, reading: FloatArray, _scales: Scales) -> list[tuple[float, ...]]:
@@ -57,8 +72,13 @@ EFFECT = Effect(
     name="stale_samples",
     stage="sensor",
     claim="The DAQ refreshes the reading more slowly than it is polled.",
-    equations="y(t) = x(n period + phase) until the next refresh; as_seen: until the recorded reading changes again",
+    equations="y(t) = x(n period + phase) until the next refresh; as_seen: until the recorded reading changes again; "
+    "own_clock: by the clock that the changes show, else up to a row before them",
     source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997; sample and hold)",
-    forms=(Form("periodic", (_PERIOD, _PHASE), _apply, _seen), Form("as_seen", (), _as_seen, seen=True)),
+    forms=(
+        Form("periodic", (_PERIOD, _PHASE), _apply, _seen),
+        Form("as_seen", (), _as_seen, seen=True),
+        Form("own_clock", (_EARLY,), _own_clock, seen=True),
+    ),
     twins=("sensor_lag",),
 )

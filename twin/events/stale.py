@@ -11,12 +11,14 @@ from scipy.special import ndtr
 from scipy.stats import chi2
 
 from logs.recording import FloatArray
+from twin.clock import clock_of
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence, nothing
 
 _MOST = 30_000  # pairs: more change nothing but the time
 _TINY = 1e-7
 _LOOK_S = 1.5  # how far to look for the motion, more than any refresh period to be found
+_REFINED = 30
 _SPREADS = (0.0, *np.geomspace(0.03, 3.0, 40))  # noise differences tried, in given sigmas
 
 
@@ -41,11 +43,22 @@ def stale_samples(
     error = float(np.sqrt(max(hold * (1.0 - hold), 1e-6) / max(1.0, float(np.sum(1.0 - chance)))))
     low, high = max(hold - 1.96 * error, 0.0), min(hold + 1.96 * error, 0.999)
     estimates = {
-        "refresh_period": Estimate(period / (1.0 - hold), (period / (1.0 - low), period / (1.0 - high)), "s"),
+        "refresh_period": _period(time_s, reading, period, (hold, low, high)),
         "hold_fraction": Estimate(hold, (low, high)),
         "regularity": Estimate(*_regularity(y)),
     }
     return Evidence(effect, ratio, float(chi2.sf(2.0 * ratio, 1)) / 2.0 if ratio > 0 else 1.0, estimates)
+
+
+def _period(time_s: FloatArray, reading: FloatArray, row_s: float, hold: tuple[float, float, float]) -> Estimate:
+    """Time between refreshes [s]: by the converter's own clock, else from the share of rows held (value, interval)."""
+    clock = clock_of(time_s, reading)
+    if clock is None:
+        value, low, high = (row_s / (1.0 - share) for share in hold)
+        return Estimate(value, (low, high), "s")
+    # over the record the clock may go wrong by the room that it leaves, once
+    off_s = clock.slack_s * clock.period_s / max(float(time_s[-1] - time_s[0]), clock.period_s)
+    return Estimate(clock.period_s, (clock.period_s - off_s, clock.period_s + off_s), "s")
 
 
 def chance_equal(motion: FloatArray, spread: float, step: float | None) -> FloatArray:
@@ -95,7 +108,10 @@ def _best(
         top = int(np.argmax(scores))
         if scores[top] > best[0]:
             best = (float(scores[top]), chance, float(holds[top]))
-    return null, best[0], best[1], best[2]
+    chance, hold = best[1], best[2]
+    for _ in range(_REFINED if hold > 0.0 else 0):  # from the grid's value on: a step of EM
+        hold = float(np.mean(same * hold / (hold + (1.0 - hold) * chance)))
+    return null, best[0], chance, hold
 
 
 def _regularity(y: FloatArray) -> tuple[float, tuple[float, float]]:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
 from twin.effect import ALONE, Place
+from twin.refresh import Freshness
 from twin.timegrid import TimeGrid, make_grid
 
 #: Rows right after the start that do not count: the state before the first row is unknown.
@@ -28,7 +29,7 @@ class Trial:
 
     `start_play` is the reading towards which the valve was moving at the start, None where it stood still.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
-    `fresh` (int, shape (n,)) is the row in which each row's reading was new, where readings are seen to be held.
+    `fresh`: how fresh each row's reading is, where readings are seen to be held.
     `place`: among the recordings of the case.
     """
 
@@ -42,7 +43,7 @@ class Trial:
     false: npt.NDArray[np.bool_]
     vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
-    fresh: npt.NDArray[np.intp] | None = None
+    fresh: Freshness | None = None
     place: Place = ALONE
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
@@ -55,7 +56,7 @@ def make_trial(
     step_s: float,
     bad_rows: npt.NDArray[np.bool_] | None = None,
     start_play: float | None = None,
-    fresh: npt.NDArray[np.intp] | None = None,
+    fresh: Freshness | None = None,
     vague: npt.NDArray[np.bool_] | None = None,
 ) -> Trial:
     """Prepares a recording; `bad_rows` are false readings of the position that no fit may see.

@@ -40,8 +40,15 @@ from twin.slots import (
 )
 
 
-def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: FloatArray, out: FloatArray) -> None:
-    """Fills `out` (shape (n,)) with the reading."""
+def sensor_kernel(
+    time_s: FloatArray,
+    stem: FloatArray,
+    offsets: np.ndarray,
+    c: FloatArray,
+    out: FloatArray,
+    taken_s: FloatArray | None = None,
+) -> None:
+    """Fills `out` (shape (n,)) with the reading; `taken_s`: when each was taken, where that is not at its row."""
     core = stem
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
@@ -49,9 +56,12 @@ def sensor_kernel(time_s: FloatArray, stem: FloatArray, offsets: np.ndarray, c: 
     if max(c[S_LAG_S], c[S_LAG2_S]) > 0.0:
         t = elapsed_s(time_s, offsets)
         late = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])
-        out[:] = lagged(time_s, offsets, late, c[S_LAG2_S])[offsets]
-    else:
+        late = lagged(time_s, offsets, late, c[S_LAG2_S])
+        out[:] = late[offsets] if taken_s is None else np.interp(taken_s, t, late)
+    elif taken_s is None:
         out[:] = static_reading(core[offsets], time_s - time_s[0], c)
+    else:
+        out[:] = static_reading(np.interp(taken_s, elapsed_s(time_s, offsets), core), taken_s, c)
     if c[S_HOLD_S] > 0.0:
         _refresh(time_s, c, out)
     if c[S_STEP] > 0.0:
