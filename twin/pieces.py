@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 
-from logs.recording import DataNote, Recording
+from logs.recording import DataNote, FloatArray, Recording
 
 #: A hole is bridged when it is shorter than this, in periods and in seconds ...
 _PERIODS = 5.0
@@ -20,6 +19,8 @@ _HELD_S = 10.0
 LEAST_PIECE_S = 20.0
 LEAST_PIECE_ROWS = 40
 MOST_PIECES = 40
+#: Up to so many rows after a hole that repeat the reading before it are a converter that had nothing newer.
+_REPEATED = 12
 
 
 def cut_at_holes(recordings: Sequence[Recording]) -> tuple[list[Recording], list[DataNote]]:
@@ -30,32 +31,44 @@ def cut_at_holes(recordings: Sequence[Recording]) -> tuple[list[Recording], list
     pieces: list[Recording] = []
     notes: list[DataNote] = []
     for recording in recordings:
-        own, lost = _cut(recording)
-        if len(own) == 1 and not lost:
+        own, lost, old = _cut(recording)
+        if len(own) == 1 and not lost + old:
             pieces.append(recording)
             continue
         pieces += own
         what = f"{recording.name}: holes in the record with unknown commands in them"
         left = f"; {lost} rows between holes are too few and are left out" if lost else ""
-        notes.append(DataNote(what, f"cut into {len(own)} pieces, each with a start of its own{left}", lost))
+        left += f"; {old} rows after holes, which repeat the reading before, are left out" if old else ""
+        notes.append(DataNote(what, f"cut into {len(own)} pieces, each with a start of its own{left}", lost + old))
     return pieces, notes
 
 
-def _cut(recording: Recording) -> tuple[list[Recording], int]:
-    """The pieces that are long enough, and how many rows are in the others."""
+def _cut(recording: Recording) -> tuple[list[Recording], int, int]:
+    """The pieces that are long enough; how many rows are in the others, and how many say what was before a hole."""
     holes = _holes(recording)
     if holes.size == 0:
-        return [recording], 0
+        return [recording], 0, 0
     edges = [0, *holes.tolist(), recording.n]
-    parts = [recording.slice(a, b) for a, b in pairwise(edges)]
+    first = [0, *(a + _repeats(recording.position, a) for a in holes.tolist())]
+    parts = [recording.slice(a, b) for a, b in zip(first, edges[1:], strict=True)]
     kept = [p for p in parts if p.n >= LEAST_PIECE_ROWS and p.duration_s >= LEAST_PIECE_S]
     if not kept:
-        return [recording], 0
+        return [recording], 0, 0
     named = [replace(p, name=f"{recording.name}[{k}]", notes=()) for k, p in enumerate(kept, start=1)]
     if len(named) == 1:
         named = [replace(named[0], name=recording.name)]
     named[0] = replace(named[0], notes=recording.notes)
-    return named, recording.n - sum(p.n for p in kept)
+    old = sum(a - b for a, b in zip(first, edges[:-1], strict=True))
+    return named, recording.n - sum(p.n for p in kept) - old, old
+
+
+def _repeats(position: FloatArray, row: int) -> int:
+    """How many readings from `row` on are the one before it: where the stem was, and by now is not.
+
+    None where there are so many that it may have rested.
+    """
+    new = np.flatnonzero(position[row : row + _REPEATED + 1] != position[row - 1])
+    return int(new[0]) if new.size else 0
 
 
 def _holes(recording: Recording) -> np.ndarray:

@@ -17,9 +17,12 @@ from twin.choose.search import Searcher, SearchRules
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit
 from twin.fit.numbers import nominal, retuned
-from twin.fit.smooth import smoothed_pressure
+from twin.fit.smooth import noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.plant import Plant
+
+#: What is left of the pressure's noise by smoothing is known to this share of itself.
+NOISE_UNSURE = 0.25
 
 Progress = Callable[[str, float], None]
 Watch = Callable[[Searcher], None]
@@ -77,10 +80,29 @@ def judge(
 
 
 def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
-    """What the doubt about the driving pressure does to the position: mean square in units of the noise variance."""
+    """What the doubt about the driving pressure does to the position: mean square in units of the noise variance.
+
+    Believing the readings altogether lets their own noise drive the play, too: what they add counts as far as it
+    is more than that noise.
+    """
     believing = position_channel(drive_by_measured(case, converter, careful=False), case.sigma_y)
     difference = (channel.prediction(case.base) - believing.prediction(case.base)) / case.sigma_y
-    return float(np.mean(np.square(difference[channel.use])))
+    return _beyond_noise(case, channel, believing) * float(np.mean(np.square(difference[channel.use])))
+
+
+def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:
+    """Share of what the pressure readings add, and only the believing believe, that may be more than their noise."""
+    noise, sigma = case.noise.pressure, case.sigma_p
+    added, expected = [], []
+    for one, other in zip(careful.trials, believing.trials, strict=True):
+        if noise is None or sigma is None or one.pressure is None or other.pressure is None:
+            return 1.0
+        rows = one.grid.offsets
+        added.append(np.square(other.pressure[rows] - one.pressure[rows]))
+        left = noise_left(sigma, one.recording.period_s, noise.correlation_samples)
+        expected.append(np.full(rows.size, left))
+    ratio = float(np.mean(np.concatenate(added)) / max(float(np.mean(np.concatenate(expected))), 1e-300))
+    return float(np.clip(ratio - (1.0 - NOISE_UNSURE), 0.0, 1.0))
 
 
 def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> tuple[Trial, ...]:

@@ -54,3 +54,15 @@ def test_a_record_of_crumbs_is_kept_whole() -> None:
 def test_not_more_pieces_than_can_be_handled() -> None:
     many = steps([(k + 25.0, k + 31.0) for k in np.arange(0.0, 3000.0, 50.0)], 3000.0)
     assert MOST_PIECES - 5 <= len(cut_at_holes([many])[0]) <= MOST_PIECES
+
+
+def test_a_reading_from_before_the_hole_begins_no_piece() -> None:
+    whole = steps([(105.0, 112.0)])
+    moving = np.sin(0.05 * whole.time_s)
+    after = int(np.flatnonzero(np.diff(whole.time_s) > 1.0)[0]) + 1
+    moving[after : after + 4] = moving[after - 1]
+    pieces, (note,) = cut_at_holes([replace(whole, position=moving)])
+    assert pieces[1].time_s[0] == whole.time_s[after + 4]
+    assert note.rows == 4 and "4 rows after holes" in note.handled
+    moving[after : after + 100] = moving[after - 1]  # a stem that rests
+    assert cut_at_holes([replace(whole, position=moving)])[0][1].time_s[0] == whole.time_s[after]

@@ -41,14 +41,19 @@ def smoothed_pressure(
     period_s = trial.recording.period_s
     at_rows = model[trial.grid.offsets]
     extra = smooth_pressure(measured, at_rows, sigma, period_s, correlation_samples, width_s) - at_rows
-    width = max(width_s / period_s, 0.5)
-    noise = sigma**2 * min(1.0, correlation_samples / (2.0 * np.sqrt(np.pi) * width))
+    noise = noise_left(sigma, period_s, correlation_samples, width_s)
     trusted = extra * _trust(extra, noise, period_s) if careful else extra
     fine = np.arange(trial.grid.n_fine)
     correction: FloatArray = np.interp(fine, trial.grid.offsets, trusted)
     low, high = _bounds(measured, sigma)
     row = np.searchsorted(trial.grid.offsets, fine, side="right") - 1
     return np.clip(model + correction, low[row], high[row])
+
+
+def noise_left(sigma: float, period_s: float, correlation_samples: float = 1.0, width_s: float = WIDTH_S) -> float:
+    """Variance of what smoothing leaves of the readings' own noise."""
+    width = max(width_s / period_s, 0.5)
+    return float(sigma**2 * min(1.0, correlation_samples / (2.0 * np.sqrt(np.pi) * width)))
 
 
 def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]:
