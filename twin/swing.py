@@ -7,7 +7,7 @@ Source: Fisher, Proc. R. Soc. A 125 (1929) 54 (the largest line of a periodogram
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,8 +15,9 @@ from logs.recording import DataNote, FloatArray
 from twin.fit.trial import Trial
 from twin.stages import StageResult
 
-#: Of the squared error of the design, for white noise the chance of this in one line is nil.
-_SHARE = 0.8
+#: Of the squared error of the design, for white noise the chance of this in one line is nil; and of the squared
+#: command, above which the swing may be an answer to it.
+_SHARE, _COMMANDED = 0.6, 0.1
 #: Fewer swings than this in the record are a drift, or a model's error.
 _SWINGS = 20.0
 _LEAST_ROWS = 200
@@ -24,26 +25,31 @@ _LEAST_ROWS = 200
 
 @dataclass(frozen=True, slots=True)
 class Swing:
-    """`share` of the squared error is one sine of `frequency_hz` (as sampled: it may be folded) and `amplitude`."""
+    """One sine of `frequency_hz` (as sampled: it may be folded) and `amplitude` is a `share` of the squared error."""
 
     frequency_hz: float
     amplitude: float
     share: float
+    signal: str = "position"
 
 
-def swing_of_position(result: StageResult) -> Swing | None:
-    """The swing of the design's error of the position [position], in what was measured of it."""
-    decision = next(d for d in result.decisions if d.findings.channel.name != "pressure")
-    channel = decision.findings.channel
-    return swing_of(decision.findings.none.residuals * channel.sigma, channel.trials)
+def swing_in(result: StageResult) -> Swing | None:
+    """The swing of the design's error of the position, else of the pressure, in what was measured of it."""
+    for decision in reversed(result.decisions):
+        channel = decision.findings.channel
+        swing = swing_of(decision.findings.none.residuals * channel.sigma, channel.trials)
+        if swing is not None:
+            return replace(swing, signal="pressure" if channel.name == "pressure" else "position")
+    return None
 
 
 def swing_note(swing: Swing, unit: str) -> DataNote:
     """What an operator should look at."""
+    look = "cable, screen and supply of the sensor" if swing.signal == "position" else "air supply, regulator and tube"
     return DataNote(
-        f"the position swings by itself, {swing.amplitude:.2g} {unit} at {swing.frequency_hz:.3g} Hz as sampled: "
+        f"the {swing.signal} swings by itself, {swing.amplitude:.2g} {unit} at {swing.frequency_hz:.3g} Hz as sampled: "
         f"{100.0 * swing.share:.0f} % of what the design misses",
-        "taken for noise, or for unexplained where nothing else is; look at cable, screen and supply of the sensor",
+        f"taken for noise, or for unexplained where nothing else is; look at {look}",
         0,
     )
 
@@ -61,11 +67,12 @@ def swing_of(error: FloatArray, trials: tuple[Trial, ...]) -> Swing | None:
         return None
     size = 4 * r.size
     power = np.abs(np.fft.rfft(r - r[use].mean() * use, size))
-    frequency = np.fft.rfftfreq(size, trials[k].recording.period_s)
+    frequency = np.fft.rfftfreq(size, float(time_s[-1]) / (r.size - 1))
     power[frequency < _SWINGS / time_s[-1]] = 0.0
     near = frequency[int(np.argmax(power))] + np.linspace(-0.5, 0.5, 41) / time_s[-1]
     best = max((_fitted(r[use], time_s[use], f) for f in near), key=lambda s: s.share)
-    return best if best.share >= _SHARE else None
+    commanded = _fitted(trials[k].recording.command[use], time_s[use], best.frequency_hz)
+    return best if best.share >= _SHARE and commanded.share < _COMMANDED else None
 
 
 def _fitted(r: FloatArray, time_s: FloatArray, frequency_hz: float) -> Swing:

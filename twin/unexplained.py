@@ -47,7 +47,7 @@ def residual_signature(
             "unit": loud.unit,
         }
     if swing is not None:
-        unit = case.scales.position_unit
+        unit = case.scales.position_unit if swing.signal == "position" else case.scales.pressure_unit
         found["swings"] = {**asdict(swing), "unit": unit}
     return found
 

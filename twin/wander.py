@@ -17,7 +17,7 @@ from twin.closure import rms
 from twin.fit.channel import predict_reading, predict_reading_given_pressure
 from twin.repeatable import MATERIAL, Disturbance, disturbance, repeated_share
 from twin.stages import StageResult
-from twin.swing import Swing, swing_note, swing_of_position
+from twin.swing import Swing, swing_in, swing_note
 
 #: Of the reading's noise; what wanders by less changes nothing.
 _SLIGHT = 0.5
@@ -42,13 +42,16 @@ class Unrest:
 
     def notes(self, case: Case) -> list[DataNote]:
         """What to say of it."""
-        swing = [swing_note(self.swing, case.scales.position_unit)] if self.swing is not None else []
-        return swing + ([_note(self.astray, case)] if self.astray is not None else [])
+        notes = [_note(self.astray, case)] if self.astray is not None else []
+        if self.swing is None:
+            return notes
+        units = {"position": case.scales.position_unit, "pressure": case.scales.pressure_unit}
+        return [swing_note(self.swing, units[self.swing.signal]), *notes]
 
 
 def unrest(case: Case, result: StageResult, margin_position: float) -> Unrest:
     """Looks at the noise, at the design's error and at what the converter's candidates left."""
-    loud, swing = disturbance(case, result.trials, margin_position), swing_of_position(result)
+    loud, swing = disturbance(case, result.trials, margin_position), swing_in(result)
     return Unrest(loud, swing, None if loud is not None or swing is not None else wander(case, result, margin_position))
 
 

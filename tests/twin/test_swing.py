@@ -25,6 +25,40 @@ def test_a_swing_is_found_with_its_frequency_and_amplitude(frequency_hz: float, 
     assert swing.share == pytest.approx(0.5 * amplitude**2 / (0.5 * amplitude**2 + SIGMA**2), abs=0.02)
 
 
+def test_rows_that_come_unevenly_blur_no_line() -> None:
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    dice = np.random.default_rng(5)
+    r = trial.recording
+    time_s = r.time_s + 0.2 * r.period_s * dice.uniform(-1.0, 1.0, r.n)
+    time_s[1:-1:2] += 0.05 * r.period_s  # the median step is not the mean one
+    error = dice.normal(0.0, SIGMA, r.n) + 0.003 * np.sin(2.0 * np.pi * 0.487 * time_s)
+    swing = swing_of(error, (replace(trial, recording=replace(r, time_s=time_s)),))
+    assert swing is not None and swing.frequency_hz == pytest.approx(0.487, abs=2e-4)
+
+
+def test_an_answer_to_a_command_that_swings_is_no_swing() -> None:
+    trial, _ = trial_of(Plant(DESIGN), staircase())
+    r = trial.recording
+    sine = np.sin(2.0 * np.pi * 0.3 * r.time_s)
+    error = np.random.default_rng(6).normal(0.0, SIGMA, r.n) + 0.004 * sine
+    assert swing_of(error, (trial,)) is not None
+    swept = replace(trial, recording=replace(r, command=7.0 + 2.0 * np.roll(sine, 3)))
+    assert swing_of(error, (swept,)) is None
+
+
+def test_a_pressure_that_swings_by_itself_is_unexplained() -> None:
+    recording = trial_of(Plant(DESIGN), staircase())[0].recording
+    assert recording.pressure is not None
+    ripple = 0.05 * np.sin(2.0 * np.pi * 0.21 * recording.time_s)
+    outcome = diagnose([replace(recording, pressure=recording.pressure + ripple)], DESIGN)
+    assert outcome.diagnosis.verdict == "unexplained"
+    signature = outcome.diagnosis.residual_signature
+    assert signature is not None
+    swings = signature["swings"]
+    assert isinstance(swings, dict) and swings["signal"] == "pressure" and swings["unit"] == "psi"
+    assert any("regulator" in note.handled for note in outcome.diagnosis.data_quality)
+
+
 @pytest.mark.parametrize("memory", [0.0, 0.9, 0.995])
 def test_noise_with_or_without_a_memory_does_not_swing(memory: float) -> None:
     trial, _ = trial_of(Plant(DESIGN), staircase())
