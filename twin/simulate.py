@@ -14,7 +14,7 @@ from logs.recording import FloatArray, Recording
 from twin.insert import inserted_from, plant_of
 from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
 from twin.refresh import freshness
-from twin.slots import S_CORE, S_SEEN
+from twin.slots import S_CORE, S_SEEN, V_REMEMBERS
 from twin.timegrid import TimeGrid, make_grid
 
 __all__ = ["Start", "inserted_from", "plant_of", "simulate_recording", "start_of", "step_for"]
@@ -24,6 +24,8 @@ _LONGEST_S, _SHORTEST_S = 0.02, 0.002
 #: Rows over which the first readings are averaged, and how much better another play output must explain the start.
 _FIRST_ROWS = 5
 _BETTER = 0.8
+#: Share of travel that is off the target, and of it what two lags later still is where something slow holds the stem.
+_OFF, _STAYS = 0.003, 0.5
 #: By which lag and rate limit of a design may be wrong.
 _OTHERWISE = (0.6, 0.67, 0.75, 0.83, 0.91, 1.0, 1.1, 1.2, 1.33, 1.5, 1.67)
 
@@ -32,13 +34,14 @@ _OTHERWISE = (0.6, 0.67, 0.75, 0.83, 0.91, 1.0, 1.1, 1.2, 1.33, 1.5, 1.67)
 class Start:
     """State before the first row: pressure, stem position, and play output (the target the stem was left with).
 
-    `core`: where the core of a loose linkage stands; not a number: with the stem.
+    `core`: where the core of a loose linkage stands; not a number: with the stem. `remembers`: see the function.
     """
 
     pressure: float
     position: float
     play: float
     core: float = float("nan")
+    remembers: bool = False
 
 
 def step_for(design: DesignModel) -> float:
@@ -64,9 +67,9 @@ def simulate_recording(
     grid = make_grid(recording.time_s, step_s or step_for(plant.design))
     first = start or start_of(plant, recording, grid)
     c = plant.coefficients(recording.duration_s)
+    c.sensor[S_CORE], c.valve[V_REMEMBERS] = first.core, first.remembers
     pressure = pressure_response(c, grid, recording.command, first.pressure)
     stem = stem_response(c, grid, pressure, first.position, first.play)
-    c.sensor[S_CORE] = first.core
     fresh = freshness(recording) if c.sensor[S_SEEN] else None
     return pressure[grid.offsets], reading_response(c, grid, stem, fresh)
 
@@ -86,6 +89,7 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     rest = Start(float(pressure), position, position, core_at(c, float(np.median(readings))))
     if not np.isfinite(recording.position).any():
         return rest
+    rest = replace(rest, remembers=remembers(plant, recording, grid))
     stems = [position, stem_at(c, float(readings[0])), stem_at(c, _before(recording))]
     plays = np.linspace(0.0, plant.design.travel, 33).tolist()
     candidates = [rest, *(Start(float(pressure), x, w) for x in stems for w in (x, *plays))]
@@ -107,6 +111,27 @@ def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | Non
     if start.play == start.position or _rests(plant, recording, grid, start):
         return None
     return reading_at(plant.coefficients(recording.duration_s), start.play)
+
+
+def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
+    """Whether the stem stands off where the pressure has it, and stays there for longer than its lag explains.
+
+    Then something slow holds it, which had been elsewhere before the recording.
+    """
+    head, cut = _head(plant, recording, grid)
+    before, after = (_off_target(plant, head, cut, rows) for rows in (slice(0, _FIRST_ROWS), slice(-_FIRST_ROWS, None)))
+    return abs(before) > _OFF * plant.design.travel and after / before > _STAYS
+
+
+def _off_target(plant: Plant, head: Recording, grid: TimeGrid, rows: slice) -> float:
+    """How far, in some rows, the reading is from where the design's play would let it rest [position]."""
+    d, readings = plant.design, head.position[rows]
+    start = float(_seen(head.pressure, float(head.command[0]))[0])
+    c = plant.coefficients(head.duration_s)
+    pressure = float(np.median(pressure_response(c, grid, head.command, start)[grid.offsets][rows]))
+    reading = float(np.median(readings[np.isfinite(readings)])) if np.isfinite(readings).any() else float("nan")
+    low, high = np.clip(d.compliance * (pressure - np.array([d.a1, d.a2])), 0.0, d.travel)
+    return reading - float(np.clip(reading, low, high))
 
 
 def _rests(plant: Plant, recording: Recording, grid: TimeGrid, moving: Start) -> bool:

@@ -65,7 +65,8 @@ V_AGING_S = 32  # time at rest after which 1 - 1/e of the breakaway is there; 0:
 V_TRAVEL = 33  # travel over which forces are given that depend on where the stem is [position]
 V_TARGET_CREEPS = 34  # 1: what creeps is the target of the stem, before its lag, its rate limit and its stops
 V_SHORT = 35  # how far friction holds the stem from its target at no speed; falls as V_STRIBECK_SPEED says [position]
-V_COUNT = 36
+V_REMEMBERS = 36  # 1: what the slow tails have of what was before holds the stem off its target at the start
+V_COUNT = 37
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

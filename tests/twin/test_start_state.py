@@ -16,7 +16,7 @@ from twin.fit.channel import predict_reading
 from twin.fit.trial import make_trial
 from twin.kernels.play import common_start
 from twin.plant import Inserted, Plant, core_at, reading_at
-from twin.simulate import Start, moving_to, simulate_recording, start_of
+from twin.simulate import Start, moving_to, remembers, simulate_recording, start_of
 from twin.timegrid import make_grid
 
 DESIGN = DesignModel()
@@ -118,3 +118,20 @@ def test_where_the_core_stands_is_found_beyond_its_linear_range_too(form: str, b
     c = Plant(DESIGN, (inserted("lvdt_nonlinearity", form, bend, straight),)).coefficients(1.0)
     for x in np.linspace(0.0, DESIGN.travel, 7):
         assert core_at(c, reading_at(c, float(x))) == pytest.approx(x, abs=2e-4)
+
+
+@pytest.mark.parametrize("form", ["one_tail", "pull_tails"])
+def test_what_tails_have_of_what_was_before_is_part_of_the_start(form: str) -> None:
+    """A creeping valve, recorded from a rest on that is not yet over; the same from a true rest remembers nothing."""
+    plant = Plant(DESIGN, (inserted("creep", form, 0.1, 40.0),))
+    whole = recorded(plant, np.repeat([4.0, 13.0, 4.0, 10.0, 4.0, 11.0], 600))
+    part = whole.slice(1400, whole.n)  # 20 s after it was vented: open, but for its tails
+    grid = make_grid(part.time_s, 0.02)
+    assert remembers(Plant(DESIGN), part, grid)
+    assert not remembers(Plant(DESIGN), whole, make_grid(whole.time_s, 0.02))
+    assert not remembers(Plant(DESIGN), whole.slice(1202, whole.n), make_grid(whole.time_s[1202:], 0.02))  # it moves
+    _, again = simulate_recording(plant, part)
+    assert np.abs(again - part.position).max() < 0.006 * DESIGN.travel
+    start = replace(start_of(plant, part, grid), remembers=False)
+    _, forgetful = simulate_recording(plant, part, start=start)
+    assert np.abs(forgetful - part.position).max() > 0.02 * DESIGN.travel

@@ -15,7 +15,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
-from twin.slots import S_CORE
+from twin.slots import S_CORE, V_REMEMBERS
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -47,6 +47,7 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s, trial.place)
     start, c.sensor[S_CORE] = stem_at(c, trial.start_position), core_at(c, trial.start_position)
     play = start if trial.start_play is None else stem_at(c, trial.start_play)
+    c.valve[V_REMEMBERS] = trial.remembers
     return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play), trial.fresh)
 
 

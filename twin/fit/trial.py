@@ -30,6 +30,7 @@ class Trial:
     `start_play` is the reading towards which the valve was moving at the start, None where it stood still.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh`: how fresh each row's reading is, where readings are seen to be held.
+    `remembers`: the stem stood off where the pressure has it, and did not go there (see `twin/simulate.py`).
     `place`: among the recordings of the case.
     """
 
@@ -44,6 +45,7 @@ class Trial:
     vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
     fresh: Freshness | None = None
+    remembers: bool = False
     place: Place = ALONE
 
     def with_pressure(self, pressure: FloatArray) -> Trial:

@@ -34,6 +34,7 @@ from twin.slots import (
     V_OUTER_SLOPE,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_REMEMBERS,
     V_SHORT,
     V_STEP,
     V_STEP_TIME_S,
@@ -68,9 +69,13 @@ def valve_kernel(
     force = _force(time_s, offsets, pressure, c, start[1])
     widening = _widening(time_s, offsets, c)
     tables = (float(tables[0]), float(tables[1]), *tables[2:])
-    _stem(time_s, offsets, force, widening, c, tables, plays, bends, (float(start[0]), float(start[1])), out)
-    if c[V_TARGET_CREEPS] == 0.0 or couples(c, bends):
-        _creep(time_s, offsets, c, out)
+    start = (float(start[0]), float(start[1]))
+    held = 0.0 if couples(c, bends) else held_by_tails(force, widening, c, tables, plays, start)
+    after = c[V_TARGET_CREEPS] == 0.0 or couples(c, bends)
+    first = (start[0] - held, start[1] - held) if after else start
+    _stem(time_s, offsets, force, widening, c, tables, plays, bends, first, held, out)
+    if after:
+        _creep(time_s, offsets, c, held, out)
 
 
 def couples(c: FloatArray, bends: Bends) -> bool:
@@ -88,9 +93,13 @@ def _stem(
     plays: Plays,
     bends: Bends,
     start: tuple[float, float],
+    held: float,
     out: FloatArray,
 ) -> None:
-    """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two."""
+    """Fills `out` with the stem before any creep: in one loop where target and stem act on each other, else in two.
+
+    `held`: see `held_by_tails`.
+    """
     low, high = stem_stops(c)
     at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
     if couples(c, bends):
@@ -101,7 +110,7 @@ def _stem(
     else:
         target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, at)
         if c[V_TARGET_CREEPS] != 0.0:
-            _creep(time_s, offsets, c, target)
+            _creep(time_s, offsets, c, held, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
         stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], out)
@@ -136,8 +145,31 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
     return widening
 
 
-def _creep(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, out: FloatArray) -> None:
-    """Replaces part of the motion by its slow tails: of the stem, or of its target where these are apart."""
+def _creep(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, held: float, out: FloatArray) -> None:
+    """Replaces part of the motion by its slow tails: of the stem, or of its target where these are apart.
+
+    `held`: what the tails still have of what was before, at the first row [position].
+    """
     shares = [(c[share], c[tau]) for share, tau in _CREEPS if c[share] != 0.0]
-    if shares:
-        out += sum(share * (lagged(time_s, offsets, out, tau_s) - out) for share, tau_s in shares)
+    if not shares:
+        return
+    out += sum(share * (lagged(time_s, offsets, out, tau_s) - out) for share, tau_s in shares)
+    if held != 0.0:
+        t, whole = elapsed_s(time_s, offsets), sum(share for share, _ in shares)
+        out += held * sum(share / whole * np.exp(-t / max(tau_s, 1e-9)) for share, tau_s in shares)
+
+
+def held_by_tails(
+    force: FloatArray, widening: FloatArray, c: FloatArray, tables: Tables, plays: Plays, start: tuple[float, float]
+) -> float:
+    """How far from where the pressure has it slow tails hold a stem that is at rest, at the first row [position].
+
+    They still have what was before the recording, where the readings show it; no more than all of the travel in each.
+    """
+    whole = float(sum(c[share] for share, _ in _CREEPS))
+    if whole <= 0.0 or c[V_REMEMBERS] == 0.0:
+        return 0.0
+    at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
+    target = float(play_target(force[:1], widening[:1], (c[V_LOW], c[V_HIGH]), tables, *plays, at)[0])
+    least, most = whole * (c[V_LOW] - target), whole * (c[V_HIGH] - target)
+    return float(min(max(start[0] - target, least), most))

@@ -17,11 +17,12 @@ class Lag:
     state that was not at rest decays on top of it.
     """
 
-    __slots__ = ("_state", "_tau_s")
+    __slots__ = ("_state", "_tau_s", "ahead")
 
     def __init__(self, tau_s: float) -> None:
         self._tau_s = tau_s
         self._state: float | None = None
+        self.ahead = 0.0  # of its first value, at the first point
 
     def follow(self, time_s: FloatArray, offsets: np.ndarray, values: FloatArray) -> FloatArray:
         """The lagged block, shape of `values`; `time_s` (2,) are its ends, `offsets` (0, steps)."""
@@ -29,7 +30,9 @@ class Lag:
             return values
         out = np.empty_like(values)
         lag_pass(time_s, offsets, values, self._tau_s, out)
-        if self._state is not None and self._state != values[0]:
+        if self._state is None:
+            self._state = float(values[0]) + self.ahead
+        if self._state != values[0]:
             step_s = (time_s[1] - time_s[0]) / offsets[1]
             out += (self._state - values[0]) * np.exp(-step_s / self._tau_s * np.arange(values.size))
         self._state = float(out[-1])

@@ -15,7 +15,7 @@ from twin.live.sensor import Sensor
 from twin.live.valve import Valve
 from twin.plant import Plant, core_at, stem_at
 from twin.simulate import Start, step_for
-from twin.slots import S_SEEN, stem_stops
+from twin.slots import S_SEEN, V_REMEMBERS, stem_stops
 
 _MOST_STEPS = 10_000
 
@@ -30,6 +30,7 @@ class LiveTwin:
         self, plant: Plant, time_s: float, command: float, start: Start, duration_s: float, step_s: float | None = None
     ) -> None:
         c = plant.coefficients(duration_s)
+        c.valve[V_REMEMBERS] = start.remembers
         self._as_seen = bool(c.sensor[S_SEEN])
         self._step_s = step_s or step_for(plant.design)
         self._time_s = time_s

@@ -54,19 +54,31 @@ class Valve:
     """Pressure in, stem out. `x0`: the stem, `w0`: the play output at the first row, whose time is `origin_s`."""
 
     def __init__(self, c: Coefficients, origin_s: float, x0: float, w0: float) -> None:
-        self._c = c.valve
+        self._all, self._c = c, c.valve
         self._origin_s = origin_s
         self._before = Lag(float(c.valve[V_TAU_BEFORE_S]))
         self._force_tail = Lag(float(c.valve[V_FORCE_CREEP_TAU_S]))
         self._outer = float(c.valve[V_OUTER_CENTRE] + c.valve[V_OUTER_SLOPE] * w0)
-        self._mover: Mover = Stuck(c, x0, w0) if couples(c) else Sliding(c, x0, w0)
-        self._tails = Tails(c if c.valve[V_TARGET_CREEPS] == 0.0 or couples(c) else None)
+        self._start = (x0, w0)
+        self._moved: tuple[Mover, Tails] | None = None
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
         """Stem on the fine points of the row, shape of `pressure`; the first point is the end of the row before."""
-        force = self._force(time_s, offsets, pressure)
-        stem = self._mover.advance(time_s, offsets, force, self._widening(time_s, offsets))
-        return self._tails.follow(time_s, offsets, stem)
+        force, widening = self._force(time_s, offsets, pressure), self._widening(time_s, offsets)
+        if self._moved is None:
+            self._moved = self._at_first(force, widening)
+        mover, tails = self._moved
+        return tails.follow(time_s, offsets, mover.advance(time_s, offsets, force, widening))
+
+    def _at_first(self, force: FloatArray, widening: FloatArray) -> tuple[Mover, Tails]:
+        """What moves the stem, and its tails, as the first pressure has them."""
+        c, start = self._all, self._start
+        if couples(c):
+            return Stuck(c, *start), Tails(c)
+        held = kernels.held_by_tails(force, widening, c.valve, curve_tables(c), (c.spreads, c.weights), start)
+        if c.valve[V_TARGET_CREEPS] != 0.0:
+            return Sliding(c, *start, Tails(c, held)), Tails(None)
+        return Sliding(c, start[0] - held, start[1] - held, Tails(None)), Tails(c, held)
 
     def _force(self, time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray) -> FloatArray:
         c = self._c
@@ -95,11 +107,17 @@ class Valve:
 
 
 class Tails:
-    """Slow tails that replace part of a motion, with their state; none for no coefficients."""
+    """Slow tails that replace part of a motion, with their state; none for no coefficients.
 
-    def __init__(self, c: Coefficients | None) -> None:
+    `held`: what they have at first of what was before [position].
+    """
+
+    def __init__(self, c: Coefficients | None, held: float = 0.0) -> None:
         tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S)) if c is not None else ()
         self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c is not None and c.valve[a]]
+        whole = sum(share for share, _ in self._tails)
+        for _, lag in self._tails:
+            lag.ahead = held / whole
 
     def follow(self, time_s: FloatArray, offsets: np.ndarray, values: FloatArray) -> FloatArray:
         """The block of fine values with its tails, shape of `values`."""
@@ -110,14 +128,14 @@ class Tails:
 class Sliding:
     """Play and stem where they do not act on each other."""
 
-    def __init__(self, c: Coefficients, x0: float, w0: float) -> None:
+    def __init__(self, c: Coefficients, x0: float, w0: float, tails: Tails) -> None:
         v = c.valve
         self._tables = curve_tables(c)
         self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
         self._plays, self._w0 = (c.spreads, c.weights), w0
         self._elements: list[float] = []
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
-        self._tails = Tails(c if v[V_TARGET_CREEPS] != 0.0 else None)
+        self._tails = tails
         self._after = Lag(float(v[V_TAU_AFTER_S]))
         self._lags_s, self._rates = v[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], v[[V_RATE_CLOSE, V_RATE_OPEN]]
         self._low, self._high = stem_stops(v)

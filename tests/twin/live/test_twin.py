@@ -52,6 +52,18 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     assert np.ptp(position) > 0.1
 
 
+@pytest.mark.parametrize("form", ["one_tail", "two_tails", "pull_tail", "pull_tails"])
+def test_a_stem_held_by_its_tails_begins_where_it_was_read(form: str) -> None:
+    plant = Plant(DesignModel(), (inserted("creep", effects()["creep"].form(form)),))
+    record, start = jagged_record(), Start(4.0, 0.03, 0.03, remembers=True)
+    _, position = live(plant, record, start)
+    _, whole = simulate_recording(plant, record, start=start)
+    assert np.max(np.abs(position - whole)) < 1e-9
+    assert position[0] == pytest.approx(0.03)
+    _, forgetful = simulate_recording(plant, record, start=Start(4.0, 0.03, 0.03))
+    assert np.abs(whole - forgetful)[30:].max() > 0.005
+
+
 def test_a_spread_of_plays_with_friction_in_the_motion_begins_at_rest() -> None:
     names = [("distributed_hysteresis", "uniform"), ("friction_in_motion", "full")]
     plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
