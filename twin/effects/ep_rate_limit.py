@@ -9,13 +9,14 @@ from twin.slots import EP_RATE_DOWN, EP_RATE_UP, FOREVER
 
 
 def _slowness(name: str, doc: str) -> Parameter:
-    # The reciprocal of the rate: no limit is 0, and a tighter limit is a larger number.
+    # The reciprocal of the rate: no limit is 0, and a tighter limit is a larger number. A limit that is not reached has
+    # no slope to follow, and one that is too tight is worse than none: the starts are close to each other.
     return Parameter(
         name=name,
         kind="time_per_pressure",
         lower=0.0,
         upper=20.0,
-        starts=(0.15, 0.5, 2.0),
+        starts=(0.15, 0.5, 1.2, 2.0, 2.8, 4.0, 6.0),
         scale=0.5,
         doc=doc,
     )
