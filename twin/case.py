@@ -12,6 +12,7 @@ from control.design import DesignModel
 from logs.recording import DataNote, Recording
 from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
+from twin.noise.coarse import Coarse, coarse
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.places import places
 from twin.plant import Inserted, Plant
@@ -48,6 +49,7 @@ class Span:
 class Case:
     """Everything a diagnosis starts from. `sigma_p` is None without a measured pressure.
 
+    `coarse`: the steps of the position reading, where they are sharp.
     A look at a large case (`twin/thin.py`) knows the `whole` of it, and which `spans` its recordings are cut from.
     """
 
@@ -60,6 +62,7 @@ class Case:
     trials: tuple[Trial, ...]
     whole: Case | None = None
     spans: tuple[Span, ...] = ()
+    coarse: Coarse | None = None
 
     @property
     def everything(self) -> Case:
@@ -89,12 +92,14 @@ def make_case(
     noise: NoiseModel | None = None,
     step: float = 0.0,
     held: bool = False,
+    sharp: bool = False,
     doubt: float = Scales().doubt,
 ) -> Case:
     """Prepares recordings against a design; `inserted` are effects that the design already has.
 
     `step` is the resolution of the position reading: still readings on one step show no noise, and have some. `held`:
-    readings are seen to be refreshed more slowly than they are polled. `doubt`: see `Scales`.
+    readings are seen to be refreshed more slowly than they are polled. `sharp`: the steps are seen to be coarse, so
+    that a reading may be an interval (`twin/noise/coarse.py`). `doubt`: see `Scales`.
     """
     noise = noise or estimate_noise(recordings)
     span = design.travel / design.compliance
@@ -111,7 +116,8 @@ def make_case(
     trials = tuple(replace(_trial(base, r, b, held), place=place) for r, b, place in triples)
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
-    return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials)
+    steps = coarse(recordings, step) if sharp else None
+    return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials, coarse=steps)
 
 
 def widened(case: Case, margin: Margin) -> tuple[Case, float]:
@@ -122,7 +128,8 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
     if sigma_p is not None:
         sigma_p = float(np.hypot(sigma_p, margin.pressure))
         shares.append(margin.pressure / sigma_p)
-    return replace(case, sigma_y=sigma_y, sigma_p=sigma_p), max(shares) ** 2
+    steps = None if case.coarse is None else case.coarse.with_margin(margin.position)
+    return replace(case, sigma_y=sigma_y, sigma_p=sigma_p, coarse=steps), max(shares) ** 2
 
 
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:

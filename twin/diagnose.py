@@ -155,7 +155,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Cas
     design = plant.design
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
     inserted = (*plant.inserted, *rounding_down(recordings, plant, sensing))
-    seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), settings.doubt)
+    seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
     case = make_case(recordings, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)
     late, late_notes = late_commands(look_at(known.case)[0])

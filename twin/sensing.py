@@ -61,6 +61,11 @@ class Sensing:
         return (Inserted("sensor_quantization", effect("sensor_quantization").forms[0], (self.step,)),)
 
     @property
+    def sharp(self) -> bool:
+        """Whether the reading is in coarse steps, all of its codes occur, and it is new in every row."""
+        return "sensor_quantization" in self.accepted and self.uneven == 1.0 and not self.held
+
+    @property
     def held(self) -> bool:
         """Whether readings are seen to be refreshed more slowly than they are polled."""
         return "stale_samples" in self.accepted

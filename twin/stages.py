@@ -66,17 +66,23 @@ def judge(
 ) -> StageResult:
     """Runs the search on every channel that the signals allow; `watch` is shown each search as it begins."""
     if case.sigma_p is None:
-        channel = chain_channel(case.trials, case.sigma_y)
+        channel = _sharp(case, chain_channel(case.trials, case.sigma_y))
         if case.noise.position.source != "repeats":
             # Without measured pressure and without repeats nobody knows how much the pressure wandered by itself.
             rules = replace(rules, quiet=3.0 * rules.quiet)
         return StageResult(case, (_judge(case, channel, search, rules, progress, watch),), case.trials)
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     trials = drive_by_measured(case, first)
-    channel = position_channel(trials, case.sigma_y)
+    channel = _sharp(case, position_channel(trials, case.sigma_y))
     floor = 1.0 + _pressure_doubt(case, channel, first)
     second = _judge(case, channel, search, rules, progress, watch, floor)
     return StageResult(case, (first, second), trials)
+
+
+def _sharp(case: Case, channel: Channel) -> Channel:
+    """The channel with intervals for readings where these are coarse."""
+    steps = case.coarse
+    return channel if steps is None else replace(channel, sigma=steps.beyond, half=steps.half)
 
 
 def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
@@ -86,8 +92,9 @@ def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
     is more than that noise.
     """
     believing = position_channel(drive_by_measured(case, converter, careful=False), case.sigma_y)
-    difference = (channel.prediction(case.base) - believing.prediction(case.base)) / case.sigma_y
-    return _beyond_noise(case, channel, believing) * float(np.mean(np.square(difference[channel.use])))
+    difference = (channel.prediction(case.base) - believing.prediction(case.base))[channel.use]
+    square = case.coarse.shifted(difference) if case.coarse is not None else float(np.mean(np.square(difference)))
+    return _beyond_noise(case, channel, believing) * square / channel.sigma**2
 
 
 def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:

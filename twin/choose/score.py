@@ -21,6 +21,7 @@ from twin.fit.fitting import Fit
 
 _ORDER = 24
 _NU = 5.0
+_LEAST_SCALE = 0.02  # of the mean square
 _FURTHER_NUMBER = 0.1
 
 
@@ -71,12 +72,14 @@ def whitening_filter(residuals: FloatArray, order: int = _ORDER) -> FloatArray:
 def student_log_likelihood(values: FloatArray) -> float:
     """Log-likelihood of independent Student t errors with 5 degrees of freedom at their best scale."""
     square = np.square(values)
-    scale = max(float(np.median(square)) / 0.528, 1e-12)
+    # where most errors are none (readings in coarse steps) the others still have a size
+    least = max(_LEAST_SCALE * float(np.mean(square)), 1e-12)
+    scale = max(float(np.median(square)) / 0.528, least)
     for _ in range(25):
-        new = float(np.mean((_NU + 1.0) * square / (_NU + square / scale)))
+        new = max(float(np.mean((_NU + 1.0) * square / (_NU + square / scale))), least)
         if abs(new - scale) < 1e-5 * scale:
             break
-        scale = max(new, 1e-12)
+        scale = new
     return float(-0.5 * values.size * np.log(scale) - 0.5 * (_NU + 1.0) * np.sum(np.log1p(square / (_NU * scale))))
 
 

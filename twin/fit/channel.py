@@ -53,7 +53,10 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
 
 @dataclass(frozen=True, slots=True)
 class Channel:
-    """Residuals (measured - predicted) / sigma over all trials, 0 in rows that do not count; shape (sum of n,)."""
+    """Residuals (measured - predicted) / sigma over all trials, 0 in rows that do not count; shape (sum of n,).
+
+    Of an error only what is larger than `half` counts: half the step of a coarse reading, which says no more.
+    """
 
     name: str
     trials: tuple[Trial, ...]
@@ -63,6 +66,7 @@ class Channel:
     predict: Predict
     numbers: tuple[str, ...]
     stages: tuple[str, ...]
+    half: float = 0.0
 
     def prediction(self, plant: Plant) -> FloatArray:
         """Predicted signal over all trials, in its own unit."""
@@ -70,8 +74,10 @@ class Channel:
 
     def residuals(self, plant: Plant) -> FloatArray:
         """Residuals in units of the noise."""
-        r = (self.measured - self.prediction(plant)) / self.sigma
-        return np.where(self.use, r, 0.0)
+        error = self.measured - self.prediction(plant)
+        if self.half > 0.0:
+            error -= np.clip(error, -self.half, self.half)
+        return np.where(self.use, error / self.sigma, 0.0)
 
     @property
     def rows(self) -> int:

@@ -1,0 +1,81 @@
+"""A reading in coarse steps says an interval: what lies within is no error, and what lies beyond tells much."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from logs.recording import Recording
+from tests.twin.judged import a_record
+from twin.case import Margin, make_case, widened
+from twin.catalog import effect
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.noise.coarse import Coarse, coarse, flicker
+from twin.plant import Inserted, Plant
+from twin.stages import judge
+
+STEP_IN = 0.03
+LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.25,))
+
+
+def rests(noise: float, seed: int, count: int = 400, rows: int = 100) -> tuple[np.ndarray, Recording]:
+    """Where a stem stands, and what a converter of step 1 reads there."""
+    dice = np.random.default_rng(seed)
+    x = np.repeat(dice.uniform(0.0, 20.0, count), rows)
+    read = np.round(x + noise * dice.normal(size=x.size))
+    return x, Recording("rests", np.arange(x.size, dtype=float), np.zeros(x.size), read)
+
+
+def rounded(record: Recording) -> Recording:
+    return replace(record, position=STEP_IN * np.round(record.position / STEP_IN))
+
+
+@pytest.mark.parametrize("noise", [0.02, 0.05, 0.1])
+def test_noise_takes_a_reading_beyond_half_a_step_as_often_as_it_says(noise: float) -> None:
+    x, read = rests(noise, 1, count=20_000, rows=10)
+    beyond = np.maximum(np.abs(read.position - x) - 0.5, 0.0)
+    still = Coarse(1.0, 0.0).beyond  # what a model that is right may miss besides
+    assert np.mean(beyond**2) == pytest.approx(Coarse(1.0, noise).beyond ** 2 - still**2, rel=0.06)
+
+
+@pytest.mark.parametrize("noise", [0.01, 0.05, 0.1])
+def test_noise_shows_in_how_often_a_code_is_left_and_taken_again(noise: float) -> None:
+    assert flicker([rests(noise, 2)[1]], 1.0) == pytest.approx(noise, rel=0.2)
+
+
+@settings(max_examples=20)
+@given(st.floats(-0.3, 0.3))
+def test_a_prediction_that_is_off_shows_at_the_edges(off: float) -> None:
+    x, read = rests(0.0, 3, count=40_000, rows=1)
+    beyond = np.maximum(np.abs(read.position - (x + off)) - 0.5, 0.0)
+    assert np.mean(beyond**2) == pytest.approx(Coarse(1.0, 0.0).shifted(np.array([off])), rel=0.1, abs=1e-6)
+
+
+def test_steps_that_noise_blurs_are_not_sharp() -> None:
+    assert coarse([rests(0.3, 4)[1]], 1.0) is None
+    assert coarse([rests(0.05, 4)[1]], 1.0) is not None
+    assert coarse([rests(0.05, 4)[1]], 0.0) is None
+
+
+def test_a_margin_of_the_healthy_machine_blurs_the_edges() -> None:
+    case = make_case([rounded(a_record(Plant(DesignModel())))], DesignModel(), step=STEP_IN, sharp=True)
+    wide, _ = widened(case, Margin(position=0.005))
+    assert case.coarse is not None and wide.coarse is not None
+    assert wide.coarse.beyond > 1.5 * case.coarse.beyond
+
+
+def test_a_lag_a_tenth_of_a_step_large_is_found_and_none_where_there_is_none() -> None:
+    for inserted in ((LATE,), ()):
+        record = rounded(a_record(Plant(DesignModel(), inserted), twice=True))
+        case = make_case([record], DesignModel(), step=STEP_IN, sharp=True)
+        result = judge(case, SearchRules(most=1), DecisionRules(), lambda _w, _s: None)
+        assert set(result.causes) <= {"additional_lag", "sensor_lag"}
+        assert len(result.causes) == len(inserted)
+        for one in result.plant().inserted:
+            assert one.values[0] == pytest.approx(0.25, rel=0.05)
