@@ -46,7 +46,7 @@ def test_noise_takes_a_reading_beyond_half_a_step_as_often_as_it_says(noise: flo
 
 @pytest.mark.parametrize("noise", [0.01, 0.05, 0.1])
 def test_noise_shows_in_how_often_a_code_is_left_and_taken_again(noise: float) -> None:
-    assert flicker([rests(noise, 2)[1]], 1.0) == pytest.approx(noise, rel=0.2)
+    assert flicker([rests(noise, 2, count=4000)[1]], 1.0) == pytest.approx(noise, rel=0.2)
 
 
 @settings(max_examples=20)
