@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+from control.aims import parked_psi, stop_psi
 from control.controller import Law, Seen
 from control.exact import lag
 from control.observer import Inside
@@ -98,10 +99,13 @@ class Brake(Law[BrakeState]):
         target_in, pushes, was_pushing = state.target_in, state.pushes, state.pushing
         state = replace(state, drive=0, pushing=False)
         if self._is_stop(target_in):
-            return replace(state, aim_psi=self._stop_psi(soon, target_in, state.aim_psi), found=None)
+            d, stop_in = self.design, self.design.travel if target_in > 0.5 * self.design.travel else 0.0
+            aim_psi = stop_psi(soon, stop_in, state.aim_psi, self.again_in, d.rate_limit * d.tau_s)
+            return replace(state, aim_psi=aim_psi, found=None)
         side = 0 if state.sticks else self._pushed(soon, target_in, state.turns)
         if not side:
-            return replace(state, aim_psi=self._parked(state, soon))
+            rests = state.quiet_s > self.patience_s
+            return replace(state, aim_psi=parked_psi(soon, state.aim_psi, self.retreat_psi) if rests else state.aim_psi)
         pushes = side if side * pushes < 0 else pushes + side * (not was_pushing)
         turns = state.turns + (0 if self._touches(soon, side) else 1)
         mark = state.mark if abs(pushes) > 2 else soon.mark(side)
@@ -210,24 +214,6 @@ class Brake(Law[BrakeState]):
         else:
             short_in = self.short_in + min(soon.edge_doubt_in(side), 0.01)
         return soon.edge_psi(target_in - side * short_in, side)
-
-    def _parked(self, state: BrakeState, soon: Belief) -> float:
-        """Off the edge where the pressure rests, at most into the middle of the gap; where it is, before patience."""
-        if state.quiet_s <= self.patience_s:
-            return state.aim_psi
-        low_psi, high_psi = (soon.edge_psi(soon.inside.w, side) for side in (-1, 1))
-        room_psi = min(self.retreat_psi, 0.5 * (high_psi - low_psi))
-        if soon.inside.p > high_psi - 0.5 * room_psi:
-            return high_psi - room_psi
-        return low_psi + room_psi if soon.inside.p < low_psi + 0.5 * room_psi else state.aim_psi
-
-    def _stop_psi(self, soon: Belief, target_in: float, aim_psi: float) -> float:
-        """Well beyond the edge, because an end stop forgives; left alone once the stem is there."""
-        side = 1 if target_in > 0.5 * self.design.travel else -1
-        stop_in = self.design.travel if side > 0 else 0.0
-        if abs(soon.inside.x - stop_in) < self.again_in and side * (aim_psi - soon.edge_psi(stop_in, side)) > 0.3:
-            return aim_psi
-        return soon.edge_psi(stop_in + side * self.design.rate_limit * self.design.tau_s, side)
 
     def _command_psi(self, inside: Inside, aim_psi: float, dt_s: float, calm: bool = False) -> float:
         """The command that brings the pressure to the aim within a tick, if the supply can and nothing is `calm`."""
