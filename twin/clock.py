@@ -55,7 +55,8 @@ def clock_of(time_s: FloatArray, reading: FloatArray) -> Clock | None:
 
 def _frequencies(t: FloatArray, new: npt.NDArray[np.intp]) -> list[float]:
     """Where the times of the new rows have a common rhythm [Hz]; folded ones, too, of a refresh almost as fast."""
-    row_s = float(np.median(np.diff(t)))
+    steps = np.diff(t)
+    row_s = float(np.mean(steps[steps < 3.0 * np.median(steps)]))  # no median: it is off by what rows come unevenly
     early = new[:_FIRST]
     typical = (early.size - 1) / float(t[early[-1]] - t[early[0]])
     low, high = (1.0 - _RANGE) * typical, (1.0 + _RANGE) * typical
