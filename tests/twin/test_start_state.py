@@ -135,3 +135,14 @@ def test_what_tails_have_of_what_was_before_is_part_of_the_start(form: str) -> N
     start = replace(start_of(plant, part, grid), remembers=False)
     _, forgetful = simulate_recording(plant, part, start=start)
     assert np.abs(forgetful - part.position).max() > 0.02 * DESIGN.travel
+
+
+def test_a_stem_that_moves_from_the_second_row_on_starts_where_it_was_read_first() -> None:
+    plant = Plant(DESIGN)
+    whole = recorded(plant, np.append(np.repeat([13.0, 9.0], 150), np.repeat([6.0, 11.0] * 8, 48)))
+    part = whole.slice(299, whole.n)  # the command steps in the second row, and the stem never rests
+    noisy = replace(part, position=part.position + np.random.default_rng(8).normal(0.0, 5e-4, part.n))
+    slow = replace(noisy, **{key: getattr(noisy, key)[::3] for key in ("time_s", "command", "position", "pressure")})
+    assert make_trial(slow, 0.02).start_position == pytest.approx(DESIGN.travel, abs=0.002)
+    rest = replace(noisy, position=np.full(part.n, 0.2) + np.random.default_rng(9).normal(0.0, 5e-4, part.n))
+    assert make_trial(rest, 0.02).start_position == pytest.approx(0.2, abs=2e-4)

@@ -109,7 +109,8 @@ def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:
     values = signal[use][:200]
     if values.size < 4:
         return float(values[0]) if values.size else 0.0
-    noise = 1.4826 * float(np.median(np.abs(np.diff(values)))) / np.sqrt(2.0)
+    # second differences: the first ones of a stem that moves at once are motion
+    noise = 1.4826 * float(np.median(np.abs(np.diff(values, 2)))) / np.sqrt(6.0)
     base = float(np.median(values[:4]))
     away = np.flatnonzero(np.abs(values - base) > 4.0 * noise + 1e-12)
     still = values[: max(int(away[0]), 1)] if away.size else values
