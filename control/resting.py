@@ -12,7 +12,7 @@ from control.play_filter import Belief
 SLOWEST = 0.03  # share of a new reading in the mean, which goes back over some 30 of them
 LEAST = 20  # readings that a mean needs to count
 GOING_IN = 0.0017  # a stem that is so far from where it goes is still on its way
-SWING_IN, SIDE_IN, NOISES = 0.013, 0.006, 2.0  # a swing without a drive is as long, and as far on either side
+SWING_IN, SIDE_IN, NOISES = 0.013, 0.003, 2.0  # a swing without a drive is as long, and as far on either side
 BEYOND_PSI = 0.022  # beyond an edge by so much, or by four standard deviations of a reading, a plate that slides moves
 
 

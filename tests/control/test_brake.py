@@ -127,5 +127,5 @@ def test_what_has_been_left_alone_stays(quiet_s: float, strokes: bool) -> None:
 
 def test_a_long_swing_through_the_target_shows_that_it_sticks() -> None:
     found = hold([0.2])[0].belief
-    assert next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.008, high_in=0.009)).sticks
+    assert next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.006, high_in=0.009)).sticks
     assert not next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.001, high_in=0.009)).sticks

@@ -34,8 +34,8 @@ def test_the_mean_is_of_what_was_read_at_rest() -> None:
 
 
 def test_only_a_long_swing_through_the_target_is_one() -> None:
-    assert read([-0.008, 0.0, 0.009]).swung(0.0006)
-    assert not read([-0.008, 0.0, 0.009]).swung(0.0024)
+    assert read([-0.006, 0.0, 0.009]).swung(0.0006)
+    assert not read([-0.006, 0.0, 0.009]).swung(0.0024)
     assert not read([-0.002, 0.001, 0.02]).swung(0.0006)  # it came from there
     assert not read([-0.005, 0.005]).swung(0.0006)
 
