@@ -13,7 +13,6 @@ from app.physics_bench import open_virtual
 from control.controller import Seen
 from control.controllers.brake import GIVEN_UP, Brake, BrakeState
 from control.design import DesignModel
-from control.resting import Resting
 
 DESIGN = DesignModel()
 TICK_S = 0.1
@@ -108,24 +107,3 @@ def test_an_edge_that_is_not_known_is_not_taken_for_sticking(doubt_psi: float, s
     inside = state.belief.inside
     mark = (inside.p - 0.12, inside.w, doubt_psi)
     assert next_move(target_in=0.2, pushes=4, mark=mark, found=state.belief).sticks == sticks
-
-
-def test_a_stroke_turns_round_only_when_the_plate_has_let_go() -> None:
-    """Else it does not move at all, and what is believed of it is wrong."""
-    in_the_gap = {"sticks": True, "turns": 1, "drive": 1, "from_in": 0.2}
-    assert next_move(target_in=0.2, **in_the_gap).drive == 1
-    assert next_move(target_in=0.2, **in_the_gap | {"sticks": False}).drive == 0
-
-
-@pytest.mark.parametrize(("quiet_s", "strokes"), [(3.0, True), (9.0, False)])
-def test_what_has_been_left_alone_stays(quiet_s: float, strokes: bool) -> None:
-    """A stroke late in a hold costs more than a miss that was let pass before."""
-    belief = hold([0.2])[0].belief
-    target_in = belief.inside.w + 1.85 * Brake(DESIGN).tolerance_in + 2.0 * belief.doubt_in
-    assert bool(next_move(target_in=target_in, sticks=True, quiet_s=quiet_s).drive) == strokes
-
-
-def test_a_long_swing_through_the_target_shows_that_it_sticks() -> None:
-    found = hold([0.2])[0].belief
-    assert next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.006, high_in=0.009)).sticks
-    assert not next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.001, high_in=0.009)).sticks
