@@ -74,7 +74,7 @@ def judge(
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     trials = drive_by_measured(case, first)
     channel = _sharp(case, position_channel(trials, case.sigma_y))
-    floor = 1.0 + _pressure_doubt(case, channel, first)
+    floor = 1.0 + pressure_doubt(case, channel, first)
     second = _judge(case, channel, search, rules, progress, watch, floor)
     return StageResult(case, (first, second), trials)
 
@@ -85,7 +85,7 @@ def _sharp(case: Case, channel: Channel) -> Channel:
     return channel if steps is None else replace(channel, sigma=steps.beyond, half=steps.half)
 
 
-def _pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
+def pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
     """What the doubt about the driving pressure does to the position: mean square in units of the noise variance.
 
     Believing the readings altogether lets their own noise drive the play, too: what they add counts as far as it
