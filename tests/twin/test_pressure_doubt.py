@@ -1,4 +1,4 @@
-"""How far the true model may miss the position because nobody knows the driving pressure: not for its readings' noise."""
+"""How far the true model may miss the position as nobody knows the driving pressure: not for its readings' noise."""
 
 from __future__ import annotations
 
