@@ -119,7 +119,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     result, judgement, parts = hearing.held_out(result, known.judgement, progress)
     everything = replace(everything, decisions=result.decisions)
     measured, wandering = case.sigma_p is not None, result.decisions[-1].floor
-    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, measured, wandering)
+    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, measured, wandering, itself.disturbed)
     known.judgement = judgement
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

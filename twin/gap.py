@@ -14,7 +14,7 @@ from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.trim import LIKELY, belief
 from twin.closure import rms
-from twin.diagnosis import Cause
+from twin.diagnosis import Cause, Verdict
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import make_space
@@ -96,7 +96,13 @@ def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, trave
 
 
 def upheld(
-    parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing, apart: bool, wandering: float = 1.0
+    parts: GapParts,
+    judgement: Judgement,
+    floor: float,
+    sensing: Sensing,
+    apart: bool,
+    wandering: float = 1.0,
+    disturbed: bool = False,
 ) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
@@ -104,7 +110,7 @@ def upheld(
     without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
     needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
     `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
-    prediction from the command leaves it too.
+    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -117,7 +123,8 @@ def upheld(
     # how much an unmeasured pressure wandered by itself nobody knows
     hardly = HARDLY if apart else SLIGHT
     if before <= hardly * floor or (vain and before < SLIGHT * floor):
-        return replace(parts, after=parts.before), Judgement("no_gap", (), judgement.ranking, ())
+        verdict: Verdict = "unexplained" if disturbed else "no_gap"
+        return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
     if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart):
         return _unexplained(parts, judgement)
     return parts, judgement

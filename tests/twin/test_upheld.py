@@ -58,6 +58,13 @@ def test_a_cause_before_a_measured_pressure_is_not_judged_by_what_a_slight_gap_l
     assert upheld(parts(1.8, 1.9, 1.3), supply, 1.0, NOTHING_SEEN, apart)[1].verdict == verdict
 
 
+@pytest.mark.parametrize(("disturbed", "verdict"), [(False, "no_gap"), (True, "unexplained")])
+def test_a_disturbance_is_a_gap_also_where_no_cause_is_needed(disturbed: bool, verdict: str) -> None:
+    judgement = upheld(parts(0.9, 0.9, 0.5), NAMED, 1.0, NOTHING_SEEN, True, 1.0, disturbed)[1]
+    assert judgement.verdict == verdict
+    assert judgement.causes == ()
+
+
 @pytest.mark.parametrize(("before", "verdict"), [(1.2, "no_gap"), (2.0, "unexplained")])
 def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, verdict: str) -> None:
     nothing = Judgement("no_gap", (), (), ())
