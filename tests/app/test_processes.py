@@ -27,7 +27,7 @@ def test_left_early_no_process_stays() -> None:
     assert multiprocessing.active_children()
     results.close()
     for child in multiprocessing.active_children():
-        child.join(5.0)
+        child.join(30.0)  # killed, but a busy machine takes its time to bury it
     assert not multiprocessing.active_children()
 
 
