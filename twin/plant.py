@@ -152,7 +152,11 @@ def core_at(c: Coefficients, reading: float) -> float:
     s = c.sensor
     x = (reading - s[S_ZERO]) / s[S_GAIN]
     if curved(s):
-        for _ in range(20):  # the curve is a few percent: a fixed-point iteration settles soon
+        before = np.inf
+        for _ in range(100):  # the curve is a few percent: a fixed-point iteration settles, soon unless it is steep
+            if abs(x - before) < 1e-7 * s[S_TRAVEL]:
+                break
+            before = x
             near = min(max(x, -0.5 * s[S_TRAVEL]), 1.5 * s[S_TRAVEL])  # no curve holds far beyond the travel
             x = (reading - s[S_ZERO]) / s[S_GAIN] - float(curvature(np.asarray(near), s))
     return float(x)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from control.design import DesignModel
@@ -113,6 +113,7 @@ def test_a_valve_that_moves_off_slower_than_designed_was_not_on_its_way_elsewher
     assert moving_to(Plant(DESIGN), part, grid) is None
 
 
+@example("leaves_range_open", -0.04, 0.9)
 @given(st.sampled_from(["leaves_range_closed", "leaves_range_open"]), st.floats(-0.04, 0.04), st.floats(0.3, 0.9))
 def test_where_the_core_stands_is_found_beyond_its_linear_range_too(form: str, bend: float, straight: float) -> None:
     c = Plant(DESIGN, (inserted("lvdt_nonlinearity", form, bend, straight),)).coefficients(1.0)
