@@ -17,7 +17,7 @@ from twin.noise.model import NoiseModel, estimate_noise
 from twin.places import places
 from twin.plant import Inserted, Plant
 from twin.refresh import freshness
-from twin.simulate import moving_to, remembers
+from twin.simulate import beginning
 from twin.timegrid import make_grid
 
 #: Travel over compliance, and travel, of the thesis's valve: the units in which effects state their sizes.
@@ -134,9 +134,9 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
 
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    play = moving_to(base, recording, make_grid(recording.time_s, step_s))
+    play, stays = beginning(base, recording, make_grid(recording.time_s, step_s))
     trial = make_trial(recording, step_s, bad, play, freshness(recording) if held else None)
-    return replace(trial, remembers=play is None and remembers(base, recording, trial.grid))
+    return replace(trial, remembers=stays)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:

@@ -106,12 +106,11 @@ def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: F
 
     `fresh`: how fresh each row's recorded reading is, for effects that go by it.
     """
-    mode, taken_s = (0.0 if fresh is None else c.sensor[S_SEEN]), None
-    if fresh is not None and mode == 2.0:
+    out, taken_s = np.empty(grid.time_s.size), None
+    if fresh is not None and c.sensor[S_SEEN] == 2.0:
         taken_s = np.maximum(fresh.taken_s - c.sensor[S_EARLY] * fresh.slack_s, 0.0)
-    out = np.empty(grid.time_s.size)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)
-    return out[fresh.rows] if fresh is not None and mode == 1.0 else out
+    return out[fresh.rows] if fresh is not None and c.sensor[S_SEEN] == 1.0 else out
 
 
 def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]:

@@ -113,6 +113,12 @@ def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | Non
     return reading_at(plant.coefficients(recording.duration_s), start.play)
 
 
+def beginning(plant: Plant, recording: Recording, grid: TimeGrid) -> tuple[float | None, bool]:
+    """Towards which reading the valve was moving (`moving_to`), and whether something slow holds it (`remembers`)."""
+    play = moving_to(plant, recording, grid)
+    return play, play is None and remembers(plant, recording, grid)
+
+
 def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
     """Whether the stem stands off where the pressure has it, and stays there for longer than its lag explains.
 

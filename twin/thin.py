@@ -19,7 +19,7 @@ from twin.effect import Place
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
 from twin.refresh import Freshness
-from twin.simulate import moving_to, remembers
+from twin.simulate import beginning
 from twin.stages import StageResult, drive_by_measured
 from twin.timegrid import make_grid
 
@@ -139,9 +139,8 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     thin = thinned(recording, rows)
     false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
-    play = moving_to(case.base, thin, make_grid(thin.time_s, step_s))
+    play, stays = beginning(case.base, thin, make_grid(thin.time_s, step_s))
     trial = make_trial(thin, step_s, false, play, _fresh_of(whole, span, rows), vague)
-    stays = play is None and remembers(case.base, thin, trial.grid)
     trial = replace(trial, place=_later(whole, span.start), remembers=stays)
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
 

@@ -15,6 +15,7 @@ from tests.twin.judged import a_record
 from twin.case import Margin, make_case, widened
 from twin.catalog import effect
 from twin.choose.decide import DecisionRules
+from twin.choose.score import student_log_likelihood
 from twin.choose.search import SearchRules
 from twin.noise.coarse import Coarse, coarse, flicker
 from twin.plant import Inserted, Plant
@@ -79,3 +80,10 @@ def test_a_lag_a_tenth_of_a_step_large_is_found_and_none_where_there_is_none() -
         assert len(result.causes) == len(inserted)
         for one in result.plant().inserted:
             assert one.values[0] == pytest.approx(0.25, rel=0.05)
+
+
+def test_errors_that_are_mostly_none_have_a_likelihood_of_a_size() -> None:
+    """Twice as large errors are as likely as these, times 2 for each: no zero makes the scale vanish."""
+    sparse = np.where(np.arange(2000) % 40 == 0, np.random.default_rng(5).normal(size=2000), 0.0)
+    twice = student_log_likelihood(2.0 * sparse)
+    assert student_log_likelihood(sparse) - twice == pytest.approx(2000 * np.log(2.0), rel=1e-3)

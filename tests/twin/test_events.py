@@ -62,6 +62,17 @@ def test_lost_replies_hold_at_random_not_evenly() -> None:
     assert abs(evidence.estimates["regularity"].value) < 0.4
 
 
+@pytest.mark.parametrize("hold", [0.6, 0.683, 0.9])
+def test_the_share_that_is_held_is_known_to_a_percent(hold: float) -> None:
+    recording = record(Toy(), COMMAND, DT, 3, SIGMA)
+    dice = np.random.default_rng(6)
+    rows = np.maximum.accumulate(np.where(dice.random(recording.n) > hold, np.arange(recording.n), 0))
+    found = scan(replace(recording, position=recording.position[rows])).evidence["stale_samples"].estimates
+    truly = float(np.mean(np.diff(rows) == 0))
+    assert found["hold_fraction"].value == pytest.approx(truly, abs=0.01)
+    assert found["refresh_period"].value == pytest.approx(recording.period_s / (1.0 - truly), rel=0.03)
+
+
 def test_coarse_steps_alone_are_not_stale() -> None:
     coarse = quantized(record(Toy(), COMMAND, DT, 3, SIGMA / 8), 20 * STEP)
     events = scan(coarse)

@@ -10,7 +10,12 @@ from hypothesis import strategies as st
 from control.design import DesignModel
 from logs.recording import FloatArray
 from tests.twin.test_kernels import excitation, run
+from tests.twin.trials import trial_of
 from twin.catalog import effect
+from twin.effect import Scales
+from twin.fit.channel import pressure_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import Cause, make_space
 from twin.kernels.sensor import static_reading
 from twin.plant import Inserted, Plant, curve_tables
 
@@ -110,3 +115,14 @@ def test_against_a_seat_only_a_share_of_the_compliance_is_left(form: str, beyond
         for xi in (0.02, 0.1, 0.5, 0.9, 0.98):
             needed = start_psi + DESIGN.travel / DESIGN.compliance * (xi + within(xi) * (1.0 / 0.25 - 1.0))
             assert np.interp(needed, grid, table) == pytest.approx(xi * DESIGN.travel, abs=3e-3)
+
+
+def test_a_limit_of_the_converter_that_is_just_reached_is_found() -> None:
+    """Ramps of 0.4 psi/s against limits of 0.35 and 0.3 psi/s, with starts at which none is met."""
+    true = (1.0 / 0.35, 1.0 / 0.30)
+    ramps = 8.0 + 2.0 * np.abs((np.arange(3000) * 0.02) % 2.0 - 1.0)  # 0.1 s rows: 0.4 psi/s
+    form = effect("ep_rate_limit").form("up_and_down")
+    trial, _ = trial_of(Plant(DESIGN, (Inserted("ep_rate_limit", form, true),)), ramps)
+    channel = pressure_channel([trial], 0.02)
+    space = make_space(Plant(DESIGN), (Cause("ep_rate_limit", effect("ep_rate_limit"), form),), ("ep_tau",), Scales())
+    assert fit(channel, space, starts_of(space)).values()[-2:] == pytest.approx(true, rel=0.02)

@@ -62,6 +62,18 @@ def test_rests_that_all_round_the_same_way_are_no_rounding_down() -> None:
     assert rounding_down([replace(trial.recording, position=position)], Plant(DESIGN), seen) == ()
 
 
+def test_rests_off_the_stops_that_all_round_up_are_no_rounding_up() -> None:
+    """Each rest reads 0.35 steps too high, which rounding may make; half a step of zero would fit it better."""
+    step_in = 0.0518
+    places = step_in * (np.array([2.0, 4.0, 6.0, 8.0, 10.0]) - 0.35)
+    trial, _ = trial_of(Plant(DESIGN), np.repeat(DESIGN.a1 + places / DESIGN.compliance, 400))
+    part = trial.recording.slice(150, trial.recording.n)
+    none = np.zeros(part.n, dtype=bool)
+    seen = Sensing((Events({}, none, none),), {"sensor_quantization": {}}, step_in)
+    coarse = replace(part, position=step_in * np.round(part.position / step_in))
+    assert rounding_down([coarse], Plant(DESIGN), seen) == ()
+
+
 def test_a_larger_zero_error_is_no_rounding() -> None:
     recording, seen = coarse(down=False)
     off = replace(recording, position=recording.position - 3.0 * STEP_IN)
