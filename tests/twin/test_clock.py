@@ -12,11 +12,18 @@ from hypothesis import strategies as st
 from control.design import DesignModel
 from logs.recording import FloatArray
 from tests.twin.judged import a_record
+from twin.case import make_case
 from twin.catalog import effect
+from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
 from twin.clock import clock_of
 from twin.plant import Inserted, Plant
 from twin.refresh import freshness
+from twin.sensing import sense
 from twin.simulate import simulate_recording
+from twin.stages import judge
+from twin.verdict import pronounce
 
 
 def rows(count: int, row_s: float, jitter: float, dice: np.random.Generator) -> FloatArray:
@@ -92,3 +99,16 @@ def test_part_of_the_rows_keeps_what_is_known_of_them() -> None:
     np.testing.assert_allclose(part.taken_s + t[200], whole.taken_s[some])
     assert np.all(part.rows <= np.arange(some.size))
     assert np.all(np.diff(part.rows) >= 0)
+
+
+def test_the_answer_gives_the_period_of_the_clock_and_what_was_fitted() -> None:
+    record = a_record(Plant(DesignModel()))
+    t = record.time_s - record.time_s[0]
+    stale = replace(record, position=np.interp(np.maximum(taken(t, 0.8838, 0.31), 0.0), t, record.position))
+    case = make_case([stale], DesignModel(), held=True)
+    result = judge(case, SearchRules(most=1), DecisionRules(), lambda _w, _s: None)
+    sensing = sense([stale], case.noise, DesignModel().travel, DesignModel().rate_limit)
+    [cause] = pronounce(result, sensing, 0.0, Weights()).causes
+    assert cause.name == "stale_samples"
+    assert cause.parameters["period"].value == pytest.approx(0.8838, rel=1e-3)
+    assert "early" in cause.parameters

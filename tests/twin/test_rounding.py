@@ -63,9 +63,9 @@ def test_rests_that_all_round_the_same_way_are_no_rounding_down() -> None:
 
 
 def test_rests_off_the_stops_that_all_round_up_are_no_rounding_up() -> None:
-    """Each rest reads 0.35 steps too high, which rounding may make; half a step of zero would fit it better."""
+    """Each rest reads 0.45 steps too high, which rounding may make; half a step of zero would fit it better."""
     step_in = 0.0518
-    places = step_in * (np.array([2.0, 4.0, 6.0, 8.0, 10.0]) - 0.35)
+    places = step_in * (np.array([2.0, 4.0, 6.0, 8.0, 10.0]) - 0.45)
     trial, _ = trial_of(Plant(DESIGN), np.repeat(DESIGN.a1 + places / DESIGN.compliance, 400))
     part = trial.recording.slice(150, trial.recording.n)
     none = np.zeros(part.n, dtype=bool)
