@@ -9,6 +9,7 @@ of the reference plant change.
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -20,16 +21,19 @@ from control.identify import identify
 from logs.recording import FloatArray, Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
-from twin.case import make_case
-from twin.choose.decide import DecisionRules
-from twin.choose.search import SearchRules
-from twin.insert import inserted_from
+from twin.case import Case, make_case
+from twin.catalog import effect
+from twin.fit.channel import Channel, position_channel, pressure_channel
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Cause, make_space
 from twin.plant import effect_tables
 from twin.simulate import simulate_recording
-from twin.stages import combined, judge
+from twin.stages import combined, driven_about
 
 FAMILY = "reference"
 SEED, FRESH = 101, (102, 103, 104)
+#: How often design and friction are fitted in turn about the other, and how far numbers may move each time.
+ROUNDS, DOUBT = 3, 0.1
 COMMENT = "The healthy reference valve as a design model, friction in motion; made by bench/blind_baseline.py."
 MARGIN = """# RMS by which the healthy reference valve departs from reference.toml, on seeds that the fit has not seen
 # and without noise; made by bench/blind_baseline.py. A blind trial finds "no gap" when nothing stands out beyond this.
@@ -47,13 +51,22 @@ def healthy(seed: int, noise: float = 1.0) -> Recording:
 
 def fitted(recording: Recording) -> DesignModel:
     """Identified, then refined with the friction in motion: the converter by its pressure, the valve behind it."""
-    design = replace(identify([recording]).design, effects={"friction_in_motion": {"form": "full"}})
-    for _ in range(2):
-        case = make_case([recording], design, inserted_from(design))
-        result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
-        plant = combined(case.base, [decision.findings.retuned for decision in result.decisions])
-        design = replace(plant.design, effects=effect_tables(plant.inserted))
-    return design
+    design = identify([recording]).design
+    friction = effect("friction_in_motion")
+    cause = Cause(friction.name, friction, friction.form("elastic"))
+    for _ in range(ROUNDS):
+        case = make_case([recording], design, ())
+        assert case.sigma_p is not None
+        found = _fit(case, pressure_channel(case.trials, case.sigma_p), ())
+        stem = _fit(case, position_channel(driven_about(found.plant, case), case.sigma_y), (cause,))
+        plant = combined(case.base, [found, stem])
+        design = plant.design
+    return replace(design, effects=effect_tables(plant.inserted))
+
+
+def _fit(case: Case, channel: Channel, causes: Sequence[Cause]) -> Fit:
+    space = make_space(case.base, causes, channel.numbers, case.scales, DOUBT)
+    return fit(channel, space, starts_of(space), rounds=30)
 
 
 def left(design: DesignModel, seed: int) -> FloatArray:

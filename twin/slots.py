@@ -66,7 +66,8 @@ V_TRAVEL = 33  # travel over which forces are given that depend on where the ste
 V_TARGET_CREEPS = 34  # 1: what creeps is the target of the stem, before its lag, its rate limit and its stops
 V_SHORT = 35  # how far friction holds the stem from its target at no speed; falls as V_STRIBECK_SPEED says [position]
 V_REMEMBERS = 36  # 1: what the slow tails have of what was before holds the stem off its target at the start
-V_COUNT = 37
+V_PRESLIDING = 37  # distance after which all of the friction in the force balance has turned [position]
+V_COUNT = 38
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -1,7 +1,8 @@
-"""A reading that swings by itself: noise that is mostly one line of the spectrum.
+"""A reading that swings by itself: noise that is mostly one line, or one narrow band, of the spectrum.
 
 The noise of a reading is measured where nothing happens, so a swing of constant amplitude (interference on the cable, a
-beat with the mains) hides in it: the design then misses by no more than the noise, and yet noise it is not.
+beat with the mains) hides in it: the design then misses by no more than the noise, and yet noise it is not. Where the
+swing comes and goes (a pipe that vibrates), its line is a band.
 Source: Fisher, Proc. R. Soc. A 125 (1929) 54 (the largest line of a periodogram).
 """
 
@@ -18,6 +19,8 @@ from twin.stages import StageResult
 #: Of the squared error of the design, for white noise the chance of this in one line is nil; and of the squared
 #: command, above which the swing may be an answer to it.
 _SHARE, _COMMANDED = 0.6, 0.1
+#: Half the width of a band, as a share of its frequency.
+_BAND = 0.1
 #: Fewer swings than this in the record are a drift, or a model's error.
 _SWINGS = 20.0
 _LEAST_ROWS = 200
@@ -67,12 +70,31 @@ def swing_of(error: FloatArray, trials: tuple[Trial, ...]) -> Swing | None:
         return None
     size = 4 * r.size
     power = np.abs(np.fft.rfft(r - r[use].mean() * use, size))
-    frequency = np.fft.rfftfreq(size, float(time_s[-1]) / (r.size - 1))
+    frequency = np.asarray(np.fft.rfftfreq(size, float(time_s[-1]) / (r.size - 1)), dtype=np.float64)
     power[frequency < _SWINGS / time_s[-1]] = 0.0
     near = frequency[int(np.argmax(power))] + np.linspace(-0.5, 0.5, 41) / time_s[-1]
-    best = max((_fitted(r[use], time_s[use], f) for f in near), key=lambda s: s.share)
-    commanded = _fitted(trials[k].recording.command[use], time_s[use], best.frequency_hz)
-    return best if best.share >= _SHARE and commanded.share < _COMMANDED else None
+    line = max((_fitted(r[use], time_s[use], f) for f in near), key=lambda s: s.share)
+    best = line if line.share >= _SHARE else _banded(r - r[use].mean() * use, power, frequency)
+    command = trials[k].recording.command
+    commanded = max(
+        _fitted(command[use], time_s[use], best.frequency_hz).share,
+        _share_near(command - command.mean(), frequency, best.frequency_hz) if best is not line else 0.0,
+    )
+    return best if best.share >= _SHARE and commanded < _COMMANDED else None
+
+
+def _banded(r: FloatArray, power: FloatArray, frequency: FloatArray) -> Swing:
+    """The band about the largest line, whose amplitude is that of a sine as strong."""
+    top = float(frequency[int(np.argmax(power))])
+    share = _share_near(r, frequency, top)
+    return Swing(top, float(np.sqrt(2.0 * share * np.mean(r**2))), share)
+
+
+def _share_near(r: FloatArray, frequency: FloatArray, centre_hz: float) -> float:
+    """Share of the square of `r` in the band about a frequency."""
+    power = np.abs(np.fft.rfft(r, 2 * (frequency.size - 1))) ** 2
+    inside = np.abs(frequency - centre_hz) <= _BAND * centre_hz
+    return float(np.sum(power[inside]) / max(float(np.sum(power)), 1e-300))
 
 
 def _fitted(r: FloatArray, time_s: FloatArray, frequency_hz: float) -> Swing:

@@ -166,3 +166,13 @@ def test_lattice_of_converted_counts_and_of_none() -> None:
     assert lattice_step(np.round(counts * STEP * 8, 4)) == pytest.approx(8 * STEP, rel=1e-3)
     assert lattice_step(rng.standard_normal(3000)) is None
     assert lattice_step(np.array([0.0, 1.0, 2.0])) is None
+
+
+def test_a_lattice_of_few_levels_is_known_when_each_is_read_often() -> None:
+    """A reading that knows six positions on all of the travel is coarse; six values that are held are not."""
+    rng = np.random.default_rng(3)
+    coarse = np.floor(rng.uniform(0.0, 6.0, 900)) * 0.0672
+    assert lattice_step(np.round(coarse, 5)) == pytest.approx(0.0672, rel=1e-3)
+    assert lattice_step(coarse[:60]) is None
+    held = np.repeat(rng.uniform(0.0, 0.56, 6), 150)
+    assert lattice_step(held) is None

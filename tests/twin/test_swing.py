@@ -25,6 +25,19 @@ def test_a_swing_is_found_with_its_frequency_and_amplitude(frequency_hz: float, 
     assert swing.share == pytest.approx(0.5 * amplitude**2 / (0.5 * amplitude**2 + SIGMA**2), abs=0.02)
 
 
+def test_a_swing_that_comes_and_goes_is_found() -> None:
+    """A pipe that vibrates: no line has half of it, the band has nearly all."""
+    r = trial_of(Plant(DESIGN), staircase())[0]
+    time_s = r.recording.time_s
+    swings = (1.0 + 0.9 * np.sin(0.11 * time_s)) * np.sin(2.0 * np.pi * 0.9 * time_s + 2.0 * np.sin(0.07 * time_s))
+    error = np.random.default_rng(8).normal(0.0, SIGMA, time_s.size) + 0.004 * swings
+    swing = swing_of(error, (r,))
+    assert swing is not None and swing.frequency_hz == pytest.approx(0.9, abs=0.05)
+    assert swing.amplitude == pytest.approx(0.004 * np.sqrt(2.0 * np.mean(swings**2)), rel=0.1)
+    swept = replace(r, recording=replace(r.recording, command=7.0 + swings))
+    assert swing_of(error, (swept,)) is None
+
+
 def test_rows_that_come_unevenly_blur_no_line() -> None:
     trial, _ = trial_of(Plant(DESIGN), staircase())
     dice = np.random.default_rng(5)

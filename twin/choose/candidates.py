@@ -39,6 +39,6 @@ def _forms(effect: Effect, base: Plant | None) -> list[tuple[Form, tuple[float, 
     present = None if base is None else next((one for one in base.inserted if one.effect == effect.name), None)
     if base is None or present is None:
         return [(form, ()) for form in effect.forms]
-    if effect.name not in base.design.effects or not present.form.parameters:
+    if effect.name not in base.design.effects or not any(p.size for p in present.form.parameters):
         return []
     return [(present.form, tuple(present.values))]

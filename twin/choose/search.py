@@ -74,8 +74,9 @@ class Searcher:
         found = [*level, *several_slips(slips, none, retuned, self._fit_from, self.rules.scant)]
         self.origins[:] = [none, retuned]
         for size in range(2, self.rules.most + 1):
-            best = min(level, key=lambda f: f.mse, default=none)
-            if best.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
+            # not the best: one that bends all numbers may leave as little, and is no answer
+            likely = self._likely(level)[0] if level else none
+            if likely.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
                 found += self._drifting(level) if size == 2 else []
                 break
             if size > 2 and self._idle(level, none, retuned):

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import PLAYS
+from twin.kernels.elastic import stretches
+from twin.slots import PLAYS, V_PRESLIDING
 
 
 def _spread(doc: str) -> tuple[Parameter]:
@@ -34,6 +35,16 @@ _SOFT = Parameter(
     doc="share of the elements whose widths spread from none to the full deadband",
 )
 
+_PRESLIDING = Parameter(
+    name="presliding",
+    kind="position",
+    lower=0.0,
+    upper=0.25,
+    starts=(0.003, 0.012, 0.04),
+    scale=0.04,
+    doc="distance after a reversal over which all of the friction has turned",
+)
+
 _QUANTILES = (np.arange(PLAYS) + 0.5) / PLAYS
 
 
@@ -56,6 +67,18 @@ def _partly_soft(c: Coefficients, values: Sequence[float]) -> None:
     _set(c, np.append(narrow, wide), soft)
 
 
+def _turns(c: Coefficients, values: Sequence[float]) -> None:
+    """Springs that slip one after the other: in the force balance as such, before it as the plays that they make."""
+    if values[0] <= 0.0:
+        return
+    c.valve[V_PRESLIDING] += values[0]
+    slips, compliance, deadband = stretches(c.valve[V_PRESLIDING]), c.design.compliance, c.design.deadband
+    turned = 2.0 * slips / compliance + deadband * np.minimum(slips[:, None] / slips, 1.0).mean(axis=1)
+    still = np.append(np.cumsum(1.0 / slips[::-1])[::-1], 0.0) / slips.size
+    gives = 1.0 / (1.0 + 0.5 * compliance * deadband * still)
+    _set(c, 0.5 * (np.append(0.0, turned) - deadband), np.diff(gives, prepend=0.0))
+
+
 def _set(c: Coefficients, spreads: np.ndarray, weights: np.ndarray) -> None:
     """Spreads about the design's half deadband, weights that sum to 1; the mean width does not change."""
     c.spreads = np.ascontiguousarray(spreads, dtype=np.float64)
@@ -71,6 +94,7 @@ EFFECT = Effect(
     forms=(
         Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
         Form("partly_soft", (_SOFT,), _partly_soft),
+        Form("turns_over_a_distance", (_PRESLIDING,), _turns),
         Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
     ),
     twins=("stiction", "creep"),

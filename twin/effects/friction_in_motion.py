@@ -15,6 +15,7 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
+    V_PRESLIDING,
 )
 
 _SHARE = Parameter(
@@ -26,6 +27,31 @@ _SHARE = Parameter(
     scale=0.3,
     doc="share of the half deadband that is friction in the force balance; the rest is play before it",
 )
+
+
+_PRESLIDING = Parameter(
+    name="presliding",
+    kind="position",
+    lower=0.0,
+    upper=0.25,
+    starts=(0.003, 0.02),
+    scale=0.04,
+    doc="distance after a reversal over which all of the friction has turned",
+    size=False,
+)
+
+
+def _beyond(where: str) -> Parameter:
+    return Parameter(
+        name=f"beyond_{where}",
+        kind="position",
+        lower=0.0,
+        upper=0.1,
+        starts=(0.005,),
+        scale=0.01,
+        doc=f"how far beyond the {where} stop forces would balance at most, that is how soft the stop is",
+        size=False,
+    )
 
 
 def _full(c: Coefficients, _values: Sequence[float]) -> None:
@@ -48,6 +74,16 @@ def _met_at_speed(c: Coefficients) -> None:
     c.valve[V_HARD_HIGH], c.valve[V_HIGH] = min(c.valve[V_HARD_HIGH], c.valve[V_HIGH]), FOREVER
 
 
+def _elastic(c: Coefficients, values: Sequence[float]) -> None:
+    _full(c, values)
+    presliding, below, above = values
+    c.valve[V_PRESLIDING] = presliding
+    c.valve[V_HARD_LOW] = max(c.valve[V_HARD_LOW], c.valve[V_LOW])
+    c.valve[V_HARD_HIGH] = min(c.valve[V_HARD_HIGH], c.valve[V_HIGH])
+    c.valve[V_LOW] -= below
+    c.valve[V_HIGH] += above
+
+
 def _full_hit(c: Coefficients, values: Sequence[float]) -> None:
     _full(c, values)
     _met_at_speed(c)
@@ -63,11 +99,13 @@ EFFECT = Effect(
     name="friction_in_motion",
     stage="actuator",
     claim="The stem stops when the pressure reverses instead of coasting to its play target.",
-    equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes before",
+    equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes "
+    "before; elastic: friction turns over a distance, w is held only beyond the stops, x at the stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799",
     forms=(
         Form("full", (), _full),
         Form("partial", (_SHARE,), _partial),
+        Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),
     ),

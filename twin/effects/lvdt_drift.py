@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 
+from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import (
     KNOTS,
@@ -102,17 +104,24 @@ def _cycle(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _apart(c: Coefficients, values: Sequence[float]) -> None:
-    """Each recording with its own zero, at its start and, as far as the values go round, at its end."""
+    """Each recording with a zero of its own: a curve through as many of the values as go round."""
     if c.place is None:
         return  # nobody knows the zero of another recording
-    number, of = c.place.number, c.place.of
-    if 2 * of <= KNOTS:
-        first, last = values[2 * number : 2 * number + 2]
-        rate = (last - first) / max(c.place.whole_s or c.duration_s, 1e-9)
-        c.sensor[S_ZERO] += first + rate * c.place.within_s
-        c.sensor[S_DRIFT_RATE] += rate
-    else:
+    number, each = c.place.number, KNOTS // c.place.of
+    if each < 2:
         c.sensor[S_ZERO] += values[number]
+        return
+    curve = np.polynomial.Polynomial(_through(each) @ np.array(values[each * number : each * (number + 1)]))
+    whole_s = max(c.place.whole_s or c.duration_s, 1e-9)
+    zeros = curve((c.place.within_s + c.duration_s * np.arange(KNOTS + 1) / KNOTS) / whole_s)
+    c.sensor[S_ZERO] += zeros[0]
+    _wander(c, (zeros[1:] - zeros[0]).tolist())
+
+
+@cache
+def _through(points: int) -> FloatArray:
+    """Coefficients, over 0 to 1, of the polynomial through evenly spaced points: a matrix for their values."""
+    return np.asarray(np.linalg.inv(np.vander(np.linspace(0.0, 1.0, points), increasing=True)), dtype=np.float64)
 
 
 def _wander(c: Coefficients, values: Sequence[float]) -> None:
@@ -126,7 +135,7 @@ EFFECT = Effect(
     claim="The zero of the reading moves gradually with time.",
     equations="y = x + rate t, or x + change (1 - exp(-t / settling)), "
     "or x + there (1 - cos) + along sin (2 pi t / period), or x + a spline through its value at ten times, "
-    "or x + a straight line of each recording's own (apart)",
+    "or x + a curve of each recording's own through up to five values (apart)",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(
         Form("linear", (_RATE,), _linear),

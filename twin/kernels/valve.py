@@ -6,10 +6,13 @@ Where target and stem do not act on each other the passes are separate and each 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.coupled import coupled_start, coupled_steps
+from twin.kernels.elastic import elastic_start, elastic_steps
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
@@ -32,6 +35,7 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
+    V_PRESLIDING,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_REMEMBERS,
@@ -49,6 +53,7 @@ from twin.slots import (
 )
 
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT]
+_STIFF = [V_BREAKAWAY, V_STRIBECK, V_HELD, V_SHORT, V_TAU_AFTER_S]
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
@@ -83,6 +88,15 @@ def couples(c: FloatArray, bends: Bends) -> bool:
     return bool(c[_COUPLING].any() or bends[0].size > 1)
 
 
+def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]], Callable[..., None]]:
+    """Start and steps of the loop for target and stem that act on each other.
+
+    Friction that turns over a distance has one of its own, except beside what only the other one knows.
+    """
+    elastic = c[V_PRESLIDING] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any()
+    return (elastic_start, elastic_steps) if elastic else (coupled_start, coupled_steps)
+
+
 def _stem(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -105,8 +119,9 @@ def _stem(
     if couples(c, bends):
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
         what = (c, stops, tables, plays, bends)
-        state, elements = coupled_start(float(force[0]), float(widening[0]), *what, (start[0], at))
-        coupled_steps(time_s, offsets, force, widening, *what, state, elements, out)
+        begin, steps = coupling(c)
+        state, elements = begin(float(force[0]), float(widening[0]), *what, (start[0], at))
+        steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
         target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, at)
         if c[V_TARGET_CREEPS] != 0.0:

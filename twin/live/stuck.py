@@ -1,4 +1,4 @@
-"""Play and stem that act on each other, row by row: the loop of `twin/kernels/coupled.py` with its state kept."""
+"""Play and stem that act on each other, row by row: the loops of `twin/kernels` with their state kept."""
 
 from __future__ import annotations
 
@@ -6,8 +6,8 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients
-from twin.kernels.coupled import coupled_start, coupled_steps
 from twin.kernels.play import common_start
+from twin.kernels.valve import coupling
 from twin.plant import curve_tables
 from twin.slots import V_HIGH, V_LOW, stem_stops
 
@@ -22,6 +22,7 @@ class Stuck:
         tables = (float(first), float(step), closing, opening)
         self._what = (v, stops, tables, (c.spreads, c.weights), c.stem_bends)
         self._start = (x0, w0)
+        self._begin, self._steps = coupling(v)
         self._kept: tuple[FloatArray, FloatArray] | None = None
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
@@ -30,7 +31,7 @@ class Stuck:
             f, wide = float(force[0]), float(widening[0])
             _, stops, tables, plays, _ = self._what
             at = common_start(f, wide, (float(stops[0]), float(stops[1])), tables, *plays, self._start[1])
-            self._kept = coupled_start(f, wide, *self._what, (self._start[0], at))
+            self._kept = self._begin(f, wide, *self._what, (self._start[0], at))
         out = np.empty(force.size)
-        coupled_steps(time_s, offsets, force, widening, *self._what, *self._kept, out)
+        self._steps(time_s, offsets, force, widening, *self._what, *self._kept, out)
         return out

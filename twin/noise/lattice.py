@@ -8,6 +8,8 @@ import numpy.typing as npt
 from logs.recording import FloatArray
 
 _LEAST_LEVELS = 8
+#: A reading of fewer levels: each read so often on average, and none farther from the lattice than this [steps].
+_FEWEST, _FEW_OFTEN, _FEW_FIT = 5, 20, 0.1
 _FIT = 0.12  # rms distance from the lattice in steps: values without a lattice have 0.29
 _MOST = 200_000
 #: Readings of each of the codes around one that never occurs, from which that is no chance (0.1 % by Poisson).
@@ -19,19 +21,29 @@ def lattice_step(values: FloatArray) -> float | None:
 
     Tolerates values rounded once more on the way into a file, and a few values off the lattice (false readings).
     """
-    levels = np.unique(values[np.isfinite(values)][:_MOST])
-    if levels.size < _LEAST_LEVELS:
+    known = values[np.isfinite(values)][:_MOST]
+    levels = np.unique(known)
+    if levels.size < _FEWEST:
         return None
     gaps = np.diff(levels)
     gaps = gaps[gaps > 1e-9 * max(float(np.abs(levels).max()), 1e-300)]
     if gaps.size < _LEAST_LEVELS - 1:
-        return None
+        return _of_few(gaps) if gaps.size >= _FEWEST - 1 and known.size >= _FEW_OFTEN * levels.size else None
     candidates = sorted((float(np.quantile(gaps, q, method="nearest")) for q in (0.0, 0.02, 0.1, 0.5)), reverse=True)
     for candidate in candidates:
         step = _fitted(gaps, candidate)
         if step is not None:
             return step
     return None
+
+
+def _of_few(gaps: FloatArray) -> float | None:
+    """The step of a reading that is so coarse that it takes a few levels only; None if they lie on no lattice."""
+    candidate = float(gaps.min())
+    multiples = np.round(gaps / candidate)
+    step = float(np.sum(gaps) / np.sum(multiples))
+    place = np.cumsum(gaps) - step * np.cumsum(multiples)
+    return step if float(np.max(np.abs(place))) < _FEW_FIT * step and np.all(multiples <= _FEWEST) else None
 
 
 def _fitted(gaps: FloatArray, candidate: float) -> float | None:

@@ -1,0 +1,132 @@
+"""Friction that turns over a distance: against a plain integration in small steps, and against its limits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.catalog import effect
+from twin.kernels.elastic import SPRINGS, stretches
+from twin.live.valve import Valve
+from twin.plant import Inserted, Plant, stem_response
+from twin.slots import V_PRESLIDING, V_TAU_AFTER_S
+from twin.timegrid import make_grid
+
+TIME_S = np.arange(0.0, 60.0, 0.05)
+#: Up and down through the deadband with an inner loop, and a jump.
+PRESSURE = np.interp(
+    TIME_S, [0, 14, 20, 23, 27, 34, 34.5, 44, 46, 60], [9.5, 15.5, 13.0, 14.2, 12.3, 14.3, 16.0, 10.0, 11.5, 15.0]
+)
+#: Where the stem is pulled to at first, with all friction turned as after opening.
+START = 0.19 * (9.5 - 5.82)
+#: So long a travel that no element of the spread comes near a stop.
+LONG = replace(DesignModel(), travel=2.0)
+
+
+def plant(presliding: float, in_motion: bool = True) -> Plant:
+    """The thesis's valve with friction in the force balance that turns over `presliding` [in]."""
+    causes = [
+        Inserted(
+            "distributed_hysteresis", effect("distributed_hysteresis").form("turns_over_a_distance"), (presliding,)
+        )
+    ]
+    if in_motion:
+        causes.append(Inserted("friction_in_motion", effect("friction_in_motion").form("full"), ()))
+    return Plant(LONG, causes)
+
+
+def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSURE, step_s: float = 0.02) -> FloatArray:
+    """The stem at the rows."""
+    grid = make_grid(time_s, step_s)
+    fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, time_s), time_s, pressure)
+    return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
+
+
+def stepped(reach: float, h: float = 1e-4) -> FloatArray:
+    """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops."""
+    d, slips = LONG, stretches(reach)
+    held, x, rows = -slips, START, [START]
+    per = round((TIME_S[1] - TIME_S[0]) / h)
+    for a, b in pairwise(PRESSURE):
+        for k in range(per):
+            friction = 0.5 * d.deadband * float(np.mean(held / slips))
+            pull = d.compliance * (a + (b - a) * (k + 0.5) / per - d.offset - friction)
+            speed = np.clip((np.clip(pull, 0.0, d.travel) - x) / d.tau_s, -d.rate_limit, d.rate_limit)
+            new = min(max(x + h * speed, 0.0), d.travel)
+            held, x = np.clip(held + new - x, -slips, slips), new
+        rows.append(x)
+    return np.array(rows)
+
+
+@pytest.mark.parametrize("reach", [0.005, 0.06])
+def test_like_springs_stepped_in_small_steps(reach: float) -> None:
+    """Other formulation, same valve; started as after opening."""
+    assert np.max(np.abs(stem(plant(reach)) - stepped(reach))) < 0.001 * 0.5625
+
+
+def test_short_springs_are_friction_in_motion() -> None:
+    """The limit of no distance is friction that turns at once."""
+    full = Plant(LONG, [Inserted("friction_in_motion", effect("friction_in_motion").form("full"), ())])
+    assert np.max(np.abs(stem(plant(1e-6)) - stem(full))) < 0.002 * 0.5625
+    assert np.max(np.abs(stem(plant(0.06)) - stem(full))) > 0.03 * 0.5625
+
+
+def test_slowly_it_is_the_spread_of_plays_that_it_makes() -> None:
+    """With all the time in the world, springs in the force balance and plays before it give one curve."""
+    slow = TIME_S * 5000.0
+    inside, before = stem(plant(0.06), slow, step_s=20.0), stem(plant(0.06, in_motion=False), slow, step_s=20.0)
+    after = TIME_S > 14.0
+    assert np.max(np.abs(inside - before)[after]) < 0.002 * 0.5625
+
+
+def test_it_is_quick_while_springs_hold() -> None:
+    """After a reversal the stem settles within a fraction of its lag: what holds it is stiff."""
+    time_s = np.arange(0.0, 40.0, 0.05)
+    pressure = np.where(time_s < 25.0, 13.5, 12.6)
+    x = stem(plant(0.06), time_s, pressure)
+    after = time_s > 25.0
+    moved = (x - x[time_s <= 25.0][-1])[after]
+    settled = moved[-1]
+    assert settled < -0.002
+    slow = DesignModel().tau_s
+    reached = time_s[after][np.argmax(moved < 0.63 * settled)] - 25.0
+    assert reached < 0.5 * slow
+
+
+def test_what_begins_at_rest_stays() -> None:
+    """Springs hold the stem where it is first read, between the curves."""
+    time_s = np.arange(0.0, 20.0, 0.1)
+    grid = make_grid(time_s, 0.02)
+    for x0 in (0.05, 0.2, 0.3):
+        pressure = np.full(grid.n_fine, 7.3 + x0 / DesignModel().compliance + 0.4)
+        got = stem_response(plant(0.06).coefficients(20.0), grid, pressure, x0, x0)
+        assert np.max(np.abs(got - x0)) < 1e-4
+
+
+@pytest.mark.parametrize("change", [lambda c: None, lambda c: c.valve.__setitem__(V_TAU_AFTER_S, 0.2)])
+def test_row_by_row_it_is_the_same(change: Callable[[object], None]) -> None:
+    """The live twin carries the springs from row to row, and so does the other loop beside what only that one knows."""
+    c = plant(0.06).coefficients(60.0)
+    change(c)
+    assert c.valve[V_PRESLIDING] == 0.06
+    grid = make_grid(TIME_S, 0.02)
+    fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S), TIME_S, PRESSURE)
+    want = stem_response(c, grid, fine, START, START)
+    valve = Valve(c, 0.0, START, START)
+    got = [START]
+    for i in range(1, TIME_S.size):
+        block = slice(int(grid.offsets[i - 1]), int(grid.offsets[i]) + 1)
+        rows = np.array([0, block.stop - 1 - block.start], dtype=np.int64)
+        got.append(float(valve.advance(TIME_S[i - 1 : i + 1], rows, fine[block])[-1]))
+    assert np.allclose(got, want[grid.offsets], atol=1e-9)
+
+
+def test_there_are_many_short_springs_and_few_long_ones() -> None:
+    slips = stretches(0.1)
+    assert slips.size == SPRINGS and np.all(np.diff(np.diff(slips)) > 0.0) and slips[-1] < 0.1

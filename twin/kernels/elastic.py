@@ -1,0 +1,178 @@
+"""Play and stem in one loop where friction is elastic: after a reversal it turns over a distance, element by element.
+
+Maxwell-slip elements in the force balance (Iwan, J. Appl. Mech. 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE
+Trans. Autom. Control 50 (2005) 1883): each is a spring between stem and packing that slips when it is stretched by its
+own distance. As long as springs hold, the stem is stiff, and therefore also quick: a spread of plays, which has the
+same curve at rest, does not know that. The small functions stand here once more on purpose: see `coupled.py`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from logs.recording import FloatArray
+from twin.kernels.inputs import Bends, Plays, Tables
+from twin.slots import (
+    V_PRESLIDING,
+    V_RATE_CLOSE,
+    V_RATE_OPEN,
+    V_TAU_CLOSE_S,
+    V_TAU_OPEN_S,
+    V_TRAVEL,
+    V_WEAR,
+)
+
+#: Springs; the k-th slips when stretched by ((k + 1/2) / SPRINGS)^2 of the longest distance: many short, few long.
+SPRINGS = 8
+_SAME = 1e-9
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def stretches(longest: float) -> FloatArray:
+    """By how much each spring is stretched when it slips, shape (SPRINGS,) [position]."""
+    slips: FloatArray = longest * ((np.arange(SPRINGS) + 0.5) / SPRINGS) ** 2
+    return slips
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
+    """Linear interpolation at `p` in a table, extended by its end slopes; `grid`: first point, points per unit."""
+    q = (p - grid[0]) * grid[1]
+    i = min(max(int(q), 0), table.size - 2)
+    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
+    return value
+
+
+def elastic_start(
+    force: float,
+    wide: float,
+    c: FloatArray,
+    stops: FloatArray,
+    tables: Tables,
+    _plays: Plays,
+    bends: Bends,
+    start: tuple[float, float],
+) -> tuple[FloatArray, FloatArray]:
+    """State (see `elastic_steps`) and stretch of each spring at rest; `start`: (x, w), `stops`: see there.
+
+    The springs hold the stem where it is pulled to `w`, as after a stroke one way and the way back that this needs.
+    """
+    x = max(stops[2], min(stops[3], start[0]))
+    grid = (tables[0], 1.0 / tables[1])
+    bottom, top = _curve_at(force - wide, grid, tables[2]), _curve_at(force + wide, grid, tables[3])
+    if bends[0].size > 1:
+        place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
+        more, less, softer = (_curve_at(x, place, one) for one in bends)
+        bottom = softer * _curve_at(force - wide - more, grid, tables[2])
+        top = softer * _curve_at(force + wide - less, grid, tables[3])
+    friction = max(-1.0, min(1.0, (bottom + top - 2.0 * start[1]) / max(top - bottom, 1e-12)))
+    slips = stretches(float(c[V_PRESLIDING]))
+    way, back = (1.0 if friction >= 0.0 else -1.0), np.linspace(0.0, slips[-1], 129)
+    shares = np.mean(np.clip(1.0 - back[:, None] / slips, -1.0, 1.0), axis=1)
+    held = way * np.clip(slips - np.interp(-abs(friction), -shares, back), -slips, slips)
+    return np.array([x, 0.0]), np.ascontiguousarray(held)
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _give(toward: float, held: FloatArray, slips: FloatArray) -> tuple[float, float]:
+    """Friction per distance of the springs that still hold on the way `toward` (1, -1) [1/position], and how far the
+    first of them does.
+    """
+    stiff, nearest = 0.0, np.inf
+    for j in range(slips.size):
+        room = slips[j] - toward * held[j]
+        if room > _SAME * slips[j]:
+            stiff += 1.0 / slips[j]
+            nearest = min(nearest, room)
+    return stiff / slips.size, nearest
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _stretched(moved: float, held: FloatArray, slips: FloatArray) -> float:
+    """Moves the springs on by `moved`; the friction they make then, -1 to 1."""
+    friction = 0.0
+    for j in range(slips.size):
+        held[j] = max(-slips[j], min(slips[j], held[j] + moved))
+        friction += held[j] / slips[j]
+    return friction / slips.size
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _held_step(
+    x: float,
+    h: float,
+    between: tuple[float, float],
+    stops: tuple[float, float, float, float],
+    lags_s: tuple[float, float],
+    rates: tuple[float, float],
+    held: FloatArray,
+    slips: FloatArray,
+    friction: float,
+) -> tuple[float, float]:
+    """The stem after `h`, and the friction then; on the way the springs slip one after the other.
+
+    `between`: the curves, friction against closing and against opening; `stops`: of what it is pulled to, of itself.
+    """
+    left = h
+    for _ in range(slips.size + 1):
+        pull = 0.5 * ((1.0 + friction) * between[0] + (1.0 - friction) * between[1])
+        target = max(stops[0], min(stops[1], pull))
+        toward = 1.0 if target > x else -1.0
+        stiff, nearest = _give(toward, held, slips)
+        room = max(0.0, stops[3] - x if toward > 0.0 else x - stops[2])
+        hold = 1.0 + (0.5 * (between[1] - between[0]) * stiff if target == pull else 0.0)
+        tau_s, rate = (lags_s[0], rates[0]) if toward > 0.0 else (lags_s[1], rates[1])
+        far = abs(target - x) / hold
+        way = min(far * (1.0 - np.exp(-left * hold / max(tau_s, 1e-12))), rate * left, room)
+        if way <= nearest:
+            return x + toward * way, _stretched(toward * way, held, slips)
+        x, friction = x + toward * nearest, _stretched(toward * nearest, held, slips)
+        left -= max(-np.log(1.0 - nearest / far) * tau_s / hold, nearest / rate)
+        if left <= 0.0:
+            break
+    return x, friction
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def elastic_steps(
+    time_s: FloatArray,
+    offsets: np.ndarray,
+    force: FloatArray,
+    widening: FloatArray,
+    c: FloatArray,
+    stops: FloatArray,
+    tables: Tables,
+    _plays: Plays,
+    bends: Bends,
+    state: FloatArray,
+    held: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled) and `held` on."""
+    grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
+    more_at, less_at, softer_at = bends
+    slips = stretches(c[V_PRESLIDING])
+    bent, place = more_at.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    ends, varies = (stops[0], stops[1], stops[2], stops[3]), widening.size > 1
+    lags_s, rates, wear = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN]), c[V_WEAR]
+    x, travelled, friction = state[0], state[1], _stretched(0.0, held, slips)
+    out[0] = x
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            more, softer = widening[f if varies else 0] + wear * travelled, 1.0
+            less = more
+            if bent:
+                more, less = more + _curve_at(x, place, more_at), less - _curve_at(x, place, less_at)
+                softer = _curve_at(x, place, softer_at)
+            middle = 0.5 * (force[f - 1] + force[f])
+            between = (
+                softer * _curve_at(middle - more, grid, closing),
+                softer * _curve_at(middle + less, grid, opening),
+            )
+            new, friction = _held_step(x, h, between, ends, lags_s, rates, held, slips, friction)
+            travelled += abs(new - x)
+            x = new
+            out[f] = x
+    state[0], state[1] = x, travelled
