@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,8 +16,9 @@ from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
 from twin.effect import Coefficients, Place
 from twin.fit.channel import position_channel, predict_reading
-from twin.plant import Inserted, Plant
-from twin.slots import KNOTS, S_DRIFT_RATE, S_ZERO
+from twin.plant import Inserted, Plant, reading_response
+from twin.slots import KNOTS
+from twin.timegrid import make_grid
 
 FORM = effect("lvdt_drift").form("apart")
 VALUES = tuple(0.001 * k for k in range(1, KNOTS + 1))
@@ -25,23 +28,40 @@ def written(part: tuple[int, int] | None, duration_s: float = 100.0) -> Coeffici
     return Plant(DesignModel(), (Inserted("lvdt_drift", FORM, VALUES),)).coefficients(duration_s, part and Place(*part))
 
 
-def test_few_recordings_have_a_line_each_and_many_a_zero_each() -> None:
-    c = written((1, 5))
-    assert c.sensor[S_ZERO] == pytest.approx(0.003) and c.sensor[S_DRIFT_RATE] == pytest.approx(1e-5)
-    c = written((7, 8))
-    assert c.sensor[S_ZERO] == pytest.approx(0.008) and c.sensor[S_DRIFT_RATE] == 0.0
+def zeros(c: Coefficients, at_s: list[float], duration_s: float = 100.0) -> FloatArray:
+    """What the reading of a stem at rest is off, at times in the recording."""
+    grid = make_grid(np.linspace(0.0, duration_s, 501), 0.1)
+    off = reading_response(c, grid, np.full(grid.n_fine, 0.2)) - 0.2
+    return np.interp(at_s, grid.time_s, off)
 
 
-def test_a_part_of_a_recording_lies_on_the_line_of_the_whole() -> None:
-    """A window of 20 s from 30 s on, of 100 s: the zero goes from 3 to 4 thousandths over all of it."""
-    plant = Plant(DesignModel(), (Inserted("lvdt_drift", FORM, VALUES),))
-    c = plant.coefficients(20.0, Place(1, 5, since_s=30.0, span_s=100.0, within_s=30.0, whole_s=100.0))
-    assert c.sensor[S_ZERO] == pytest.approx(0.0033) and c.sensor[S_DRIFT_RATE] == pytest.approx(1e-5)
+def test_few_recordings_have_a_curve_each_and_many_a_zero_each() -> None:
+    assert zeros(written((1, 2)), [0.0, 25.0, 50.0, 75.0, 100.0]) == pytest.approx(np.array(VALUES[5:]), abs=1e-6)
+    assert zeros(written((1, 3)), [0.0, 50.0, 100.0]) == pytest.approx([0.004, 0.005, 0.006], abs=1e-6)
+    assert zeros(written((1, 5)), [0.0, 30.0, 100.0]) == pytest.approx([0.003, 0.0033, 0.004], abs=1e-6)
+    assert zeros(written((7, 8)), [0.0, 100.0]) == pytest.approx([0.008, 0.008], abs=1e-9)
+
+
+def test_a_curve_is_a_curve() -> None:
+    """Five values that go there and come back; between them it is smooth."""
+    values = (0.0, 0.006, 0.008, 0.006, 0.0, *np.zeros(KNOTS - 5))
+    c = Plant(DesignModel(), (Inserted("lvdt_drift", FORM, values),)).coefficients(100.0, Place(0, 2))
+    got = zeros(c, [0.0, 12.5, 25.0, 50.0, 87.5])
+    assert got == pytest.approx([0.0, 0.0035, 0.006, 0.008, 0.0035], abs=5e-5)
+
+
+def test_a_part_of_a_recording_lies_on_the_curve_of_the_whole() -> None:
+    """A window of 20 s from 30 s on, of 100 s."""
+    values = (0.0, 0.006, 0.008, 0.006, 0.0, *np.zeros(KNOTS - 5))
+    plant = Plant(DesignModel(), (Inserted("lvdt_drift", FORM, values),))
+    whole = zeros(plant.coefficients(100.0, Place(0, 2)), [30.0, 40.0, 50.0])
+    part = plant.coefficients(20.0, Place(0, 2, since_s=30.0, span_s=100.0, within_s=30.0, whole_s=100.0))
+    assert zeros(part, [0.0, 10.0, 20.0], 20.0) == pytest.approx(whole, abs=2e-5)
 
 
 def test_the_zero_of_another_recording_is_not_known() -> None:
     c = written(None)
-    assert c.sensor[S_ZERO] == c.sensor[S_DRIFT_RATE] == 0.0
+    assert zeros(c, [0.0, 100.0]) == pytest.approx([0.0, 0.0], abs=1e-12)
 
 
 def steps(seed: int) -> FloatArray:
@@ -71,6 +91,14 @@ def test_each_recording_is_predicted_with_its_own_zero() -> None:
     for k, trial in enumerate(case.trials):
         moved = predict_reading(plant, trial) - predict_reading(Plant(DesignModel()), trial)
         assert moved[-1] == pytest.approx(VALUES[2 * k + 1], abs=2e-5)
+
+
+def test_zeros_that_wander_in_each_recording_by_itself_are_a_drift() -> None:
+    found = recordings([0.0, 0.0])
+    curves = [0.006 * np.sin(np.pi * r.time_s / r.duration_s) ** p for r, p in zip(found, (1, 3), strict=True)]
+    wandering = [replace(r, position=r.position + c) for r, c in zip(found, curves, strict=True)]
+    outcome = diagnose(wandering, DesignModel())
+    assert [c.name for c in outcome.diagnosis.causes] == ["lvdt_drift"]
 
 
 def test_zeros_that_differ_between_recordings_are_a_drift() -> None:

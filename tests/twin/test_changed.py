@@ -105,3 +105,17 @@ def test_one_effect_takes_the_place_of_another_of_its_name() -> None:
     more = Inserted("sensor_lag", LAG, (0.4,))
     assert base.having([more]).inserted == (more,)
     assert base.having([]).inserted == base.inserted
+
+
+def test_numbers_that_say_how_an_effect_acts_are_settled_by_the_file() -> None:
+    """Friction in motion is there or not; how soft it is in a design is no cause that could have changed."""
+    design = replace(
+        DesignModel(),
+        effects={
+            "friction_in_motion": {"form": "elastic", "presliding": 0.01, "beyond_lower": 0.0, "beyond_upper": 0.0}
+        },
+    )
+    case = make_case([a_record(plant_of(design))], design, inserted_from(design))
+    causes = effect_causes(position_channel(case.trials, case.sigma_y), case.base)
+    assert "friction_in_motion" not in {c.name for c in causes}
+    assert "distributed_hysteresis" in {c.name for c in causes}

@@ -140,3 +140,19 @@ def test_a_third_cause_is_not_looked_for_where_it_would_not_be_accepted() -> Non
     assert 3 not in {len(f.names) for f in found.fits}
     bold = Searcher(channel, Plant(DESIGN), Scales(), replace(rules, scant=0.0)).run().fits
     assert 3 in {len(f.names) for f in bold}
+
+
+def test_one_that_bends_all_numbers_does_not_end_the_search() -> None:
+    """What leaves as little as noise at the price of numbers that nobody believes is no reason to look no further."""
+    channel = channel_of(Plant(DESIGN))
+    dice = np.random.default_rng(2).standard_normal(channel.use.size)
+
+    def one(mse: float, prior: float) -> Fit:
+        space = make_space(Plant(DESIGN), (cause("sensor_lag", "first_order"),), (), Scales())
+        return Fit(space, np.zeros(1), mse, prior, np.sqrt(mse) * dice, np.eye(1), 1)
+
+    searcher = Searcher(channel, Plant(DESIGN), Scales())
+    none = one(3000.0, 0.0)
+    assert searcher._nothing_left([one(3.0, 10.0), one(12.0, 2.0)], none)
+    assert not searcher._nothing_left([one(3.0, 70_000.0), one(12.0, 2.0)], none)
+    assert not searcher._nothing_left([one(12.0, 2.0)], none)

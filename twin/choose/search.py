@@ -74,9 +74,7 @@ class Searcher:
         found = [*level, *several_slips(slips, none, retuned, self._fit_from, self.rules.scant)]
         self.origins[:] = [none, retuned]
         for size in range(2, self.rules.most + 1):
-            # not the best: one that bends all numbers may leave as little, and is no answer
-            likely = self._likely(level)[0] if level else none
-            if likely.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0)):
+            if self._nothing_left(level, none):
                 found += self._drifting(level) if size == 2 else []
                 break
             if size > 2 and self._idle(level, none, retuned):
@@ -87,6 +85,11 @@ class Searcher:
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
         return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
+
+    def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
+        """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer."""
+        likely = self._likely(level)[0] if level else none
+        return likely.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0))
 
     def _idle(self, pairs: Sequence[Fit], none: Fit, retuned: Fit) -> bool:
         """Whether a third cause is not worth looking for."""

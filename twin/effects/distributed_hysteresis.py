@@ -89,8 +89,11 @@ EFFECT = Effect(
     name="distributed_hysteresis",
     stage="actuator",
     claim="The hysteresis is a spread of play widths: inner reversals move the stem gradually.",
-    equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0",
-    source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996)",
+    equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0; turns_over_a_distance: "
+    "friction is the half deadband times the mean of z_j / q_j, springs z_j that x stretches and that slip at "
+    "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance",
+    source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996); "
+    "Iwan, J. Appl. Mech. 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005) 1883",
     forms=(
         Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
         Form("partly_soft", (_SOFT,), _partly_soft),
