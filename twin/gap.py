@@ -39,8 +39,10 @@ DOUBTFUL = 1.6
 SLIGHT = 1.3
 #: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
 #: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
+#: That is forgiven where all of a record is explained to its noise (`EXACT`, mean square, noise = 1).
 #: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
+EXACT = 1.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +105,7 @@ def upheld(
     apart: bool,
     wandering: float = 1.0,
     disturbed: bool = False,
+    exact: bool = False,
 ) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
@@ -110,7 +113,7 @@ def upheld(
     without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
     needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
     `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
-    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it.
+    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see there.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -125,7 +128,7 @@ def upheld(
     if before <= hardly * floor or (vain and before < SLIGHT * floor):
         verdict: Verdict = "unexplained" if disturbed else "no_gap"
         return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
-    if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart):
+    if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart, exact):
         return _unexplained(parts, judgement)
     return parts, judgement
 
@@ -147,7 +150,12 @@ def _doubted(judgement: Judgement) -> bool:
     return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
 
 
-def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool) -> bool:
+def exact(result: StageResult) -> bool:
+    """Whether what was accepted explains all of its signals to their noise."""
+    return all(d.accepted.mse <= EXACT * d.floor for d in result.decisions if d.names)
+
+
+def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool, exact: bool) -> bool:
     """Whether the causes leave too much of the gap where no fit has seen it."""
     left, gap = after**2 - floor**2, before**2 - floor**2
     if before <= CLEAR * floor:
@@ -157,7 +165,7 @@ def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], 
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
     several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
-    many = any(len(c.parameters) > FREE for c in causes)
+    many = any(len(c.parameters) > FREE for c in causes) and not exact
     share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
     return left > share * gap
 

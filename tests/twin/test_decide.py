@@ -5,18 +5,21 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules, _worth
+from twin.choose.decide import DecisionRules, _fewer_unknowns, _worth
 from twin.fit.space import Cause
 
 NAMES = ("creep", "spring_asymmetry", "stiction")
 
 
-def fitted(count: int, mse: float) -> Any:
+def fitted(count: int, mse: float, bent: float = 0.0) -> Any:
+    """A fit with so many causes; `bent`: squares of the design number's move, in deviations of its prior."""
     causes = [Cause(name, effect(name), effect(name).forms[0]) for name in NAMES[:count]]
-    return SimpleNamespace(mse=mse, space=SimpleNamespace(causes=causes))
+    space = SimpleNamespace(causes=causes, numbers=("tau",), spreads=np.ones(1))
+    return SimpleNamespace(mse=mse, space=space, z=np.array([np.sqrt(bent)]))
 
 
 @pytest.mark.parametrize(
@@ -32,3 +35,30 @@ def test_a_third_cause_has_to_explain_part_of_the_gap(count: int, mse: tuple[flo
     small, large = fitted(count - 1, mse[0]), fitted(count, mse[1])
     findings: Any = SimpleNamespace(none=fitted(0, 101.0), score=lambda one: -100.0 * one.mse)
     assert _worth(findings, small, large, DecisionRules(), 1.0) is wanted
+
+
+@pytest.mark.parametrize(
+    ("bent", "left", "wanted"),
+    [(0.0, 0.0, False), (800.0, 0.0, True), (800.0, 20.0, True), (800.0, 400.0, False)],
+)
+def test_a_second_cause_that_spares_numbers_nobody_believes_is_worth_it(bent: float, left: float, wanted: bool) -> None:
+    """A lag of 4 s beside friction in motion, or a lag of 0.8 s with a time constant four times the design's."""
+    small, large = fitted(1, 1.57, bent), fitted(2, 1.22, left)
+    findings: Any = SimpleNamespace(none=fitted(0, 353.0), score=lambda one: -100.0 * one.mse)
+    assert _worth(findings, small, large, DecisionRules(), 1.0) is wanted
+
+
+def test_a_law_goes_before_a_free_curve_that_is_hardly_better() -> None:
+    """A friction profile that is a straight line is an asymmetry of the spring."""
+
+    def one(names: tuple[str, ...], unknowns: int, mse: float) -> Any:
+        causes = [Cause(name, effect(name), effect(name).forms[0]) for name in names]
+        return SimpleNamespace(names=names, mse=mse, space=SimpleNamespace(causes=causes, unknowns=[None] * unknowns))
+
+    profile = one(("position_dependent_friction", "stale_samples"), 18, 0.989)
+    line, poor = one(("spring_asymmetry", "stale_samples"), 6, 1.0), one(("creep", "stale_samples"), 7, 1.2)
+    findings: Any = SimpleNamespace(none=fitted(0, 226.0), fits=(profile, line, poor), score=lambda f: -f.mse)
+    assert _fewer_unknowns(findings, profile, DecisionRules()) is line
+    assert _fewer_unknowns(findings, line, DecisionRules()) is line
+    slight: Any = SimpleNamespace(none=fitted(0, 1.3), fits=(profile, line), score=lambda f: -f.mse)
+    assert _fewer_unknowns(slight, profile, DecisionRules()) is profile

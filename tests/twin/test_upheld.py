@@ -204,3 +204,13 @@ def test_intervals_end_where_the_parameter_does() -> None:
     found = estimates(fit(channel, space, [np.full(6, 1e-3)]), 1.0)[("linkage_lost_motion", form.parameters[0].name)]
     assert found.ci95[0] >= 0.0
     assert found.ci95[0] <= found.value <= found.ci95[1]
+
+
+def test_a_free_curve_that_explains_all_of_the_record_may_leave_as_much_as_a_law() -> None:
+    """What a dozen points of a profile cost on rows that they have not seen is no evidence against the cause."""
+    size = Estimate(0.01, (0.009, 0.011), "psi")
+    curve = Named("position_dependent_friction", "actuator", 0.9, None, {f"at_{k}": size for k in range(13)})
+    found = Judgement("effect", (curve,), (), ())
+    levels = parts(40.0, 40.0, 0.25 * 40.0)
+    told = [upheld(levels, found, 1.0, NOTHING_SEEN, True, 1.0, False, exact)[1].verdict for exact in (False, True)]
+    assert told == ["unexplained", "effect"]

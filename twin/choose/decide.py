@@ -11,12 +11,18 @@ from dataclasses import dataclass
 
 from twin.choose.claims import size_of
 from twin.choose.findings import Findings
+from twin.choose.reform import bent_by
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
 
 #: Share of the squared moves of the design numbers in re-tuning that an idle effect does not spare them.
 _SPARED = 0.5
 
+#: Squares of the design numbers' moves, in their priors' deviations, that nobody believes; and the share of them that a
+#: larger hypothesis may need to count as sparing the numbers.
+_BENT, _STRAIGHTER = 50.0, 0.2
+#: By how many unknowns a free curve exceeds a law.
+_FREE = 5
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
 _ABOVE_BEST = 1.5
 
@@ -83,7 +89,8 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             # wrong numbers are not enough: the effect that they were taken for gets its chance
             better, instead = instead, None
         accepted = better
-    accepted = _with_numbers(findings, _plainer_member(findings, accepted, rules), rules)
+    accepted = _fewer_unknowns(findings, _plainer_member(findings, accepted, rules), rules)
+    accepted = _with_numbers(findings, accepted, rules)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
@@ -162,6 +169,24 @@ def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     return max(near, key=findings.score) if near else fit
 
 
+def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+    """`fit`, or the same with a plain law in place of one free curve, if what the curve does better is immaterial.
+
+    A profile through a dozen points that is a straight line is `spring_asymmetry`.
+    """
+    slack = min(rules.plain, rules.share * (findings.none.mse - 1.0))
+    near = [
+        f
+        for f in findings.fits
+        if len(f.names) == len(fit.names)
+        and len(f.space.unknowns) <= len(fit.space.unknowns) - _FREE
+        and f.mse <= fit.mse + slack
+        and _effects(f) - _effects(fit)
+        and len(set(fit.names) - set(f.names)) == 1
+    ]
+    return max(near, key=findings.score) if near else fit
+
+
 def _effects(fit: Fit) -> set[str]:
     return {c.name for c in fit.space.causes if c.effect is not None}
 
@@ -188,7 +213,9 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     significant = findings.score(large) - findings.score(small) > rules.evidence
     # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
     tidy = gain > rules.complete * left and size_of(large) < 3
-    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or tidy)
+    # numbers that nobody believes are part of what the smaller one leaves
+    spares = bent_by(small) > _BENT and bent_by(large) < _STRAIGHTER * bent_by(small)
+    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or tidy or spares)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
     return significant and material and thorough

@@ -15,7 +15,7 @@ def _lag(doc: str) -> tuple[Parameter]:
             kind="time",
             lower=0.0,
             upper=8.0,
-            starts=(0.06, 0.25, 0.9),
+            starts=(0.06, 0.25, 0.9, 3.0),
             scale=0.5,
             doc=doc,
             usual=(0.3, 3.0),  # filling a diaphragm chamber through its tubing: tenths of a second to seconds

@@ -74,6 +74,10 @@ def _stem_seat(c: Coefficients, values: Sequence[float]) -> None:
     _push_stem(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
 
 
+def _stem_suction(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, values[0] * np.exp(-(1.0 - c.xi) / values[1]))
+
+
 def _suction(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * np.exp(-(1.0 - c.xi) / values[1]))
 
@@ -98,11 +102,15 @@ EFFECT = Effect(
         Form("stem_linear", _force("force at closed, growing in proportion to closure, as pressure"), _stem_linear),
         Form("stem_square", _force("force at closed, growing with the square of closure, as pressure"), _stem_square),
         Form("stem_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _stem_seat),
+        Form(
+            "stem_suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _stem_suction
+        ),
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
     odds=0.05,  # most benches are dry
     absorbs=("compliance", "offset"),
     same_as=dict.fromkeys(
-        ("throttling", "near_seat", "at_seat", "suction", "stem_square", "stem_seat"), ("nonlinear_spring",)
+        ("throttling", "near_seat", "at_seat", "suction", "stem_square", "stem_seat", "stem_suction"),
+        ("nonlinear_spring",),
     ),
 )
