@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from control.controller import Seen
 from control.design import DesignModel
 from control.exact import Matrix, considered, dot, lag, length, times
+from control.lateness import Lateness
 from control.observer import Inside, Observer
 from control.play_points import A1, A2, SIZE, K, R, T, W, X, moved
 
@@ -24,6 +25,7 @@ NOISE_IN = 0.0006
 EDGE_PSI, STIFFNESS, RATE, TRAVEL, MOST = 0.3, 0.015, 0.03, 0.02, 0.1
 WALK_PSI, CREEP_IN = 0.03, 1.5e-4  # random walk of the edges per travel moved, of the play output per root second
 NOISE_PSI, STOP_IN = 0.004, 0.003
+REMEMBERED, LATE_DOUBT = 30, 0.1  # ticks of motion; share of what the stem went since a late reading that is doubt
 FIRST, LATER = 6, 0.02  # what the supposed noise weighs at the start, in readings; what a new reading weighs later
 
 
@@ -32,7 +34,8 @@ class Belief:
     """Means in `inside`, `compliance` [in/psi], `rate_limit` [in/s] and `travel`, where the play output stops [in];
     `spread` is the covariance of (x, rate limit, travel, w, a1, a2, compliance), row by row; `noise_in`, `noise_psi`
     the standard deviations of one reading; `doubt_psi` that of the pressure estimate; `missed` by how much the last
-    readings of position and pressure were off; `heard`, how many there were."""
+    readings of position and pressure were off; `heard`, how many there were; `went`, how far the stem went in each of
+    the last ticks [in], the newest first."""
 
     inside: Inside
     compliance: float
@@ -44,6 +47,7 @@ class Belief:
     doubt_psi: float = NOISE_PSI
     missed: tuple[float, float] = (0.0, 0.0)
     heard: int = 0
+    went: tuple[float, ...] = ()
 
     @property
     def doubt_in(self) -> float:
@@ -75,6 +79,14 @@ class Belief:
         """The same as a pressure [psi]."""
         return self.edge_doubt_in(side) / self.compliance
 
+    def went_in(self, ticks: float) -> float:
+        """How far the stem went in the last so many ticks [in]."""
+        whole = int(ticks)
+        went_in = (ticks - whole) * self.went[whole] if whole < len(self.went) else 0.0
+        for each_in in self.went[:whole]:
+            went_in += each_in
+        return went_in
+
     def mark(self, side: int) -> tuple[float, float, float]:
         """Where things stand when pushing begins: the edge of this side [psi], the play output [in], the edge's doubt
         [psi]."""
@@ -98,29 +110,34 @@ class PlayFilter:
         learned = replace(self.design, compliance=belief.compliance, rate_limit=belief.rate_limit, travel=belief.travel)
         return Observer(learned, bias_gain=0.1)
 
-    def track(self, belief: Belief, seen: Seen, dt_s: float) -> tuple[Belief, Belief]:
+    def track(self, belief: Belief, seen: Seen, dt_s: float, late: Lateness) -> tuple[Belief, Belief]:
         """The belief for the next tick, and for the instant at which the next command begins to act."""
-        keep = self._correct(belief, seen, dt_s)
+        keep = self._correct(belief, seen, dt_s, late)
+        x = keep.inside.x
         for command_psi, share in keep.inside.line.next_tick:
             keep = self.ahead(keep, command_psi, share * dt_s)
-        acts = keep
+        keep = acts = replace(keep, went=(keep.inside.x - x, *keep.went[:REMEMBERED]))
         for command_psi, share in keep.inside.line.after_that:
             acts = self.ahead(acts, command_psi, share * dt_s)
         return keep, acts
 
-    def _correct(self, belief: Belief, seen: Seen, dt_s: float) -> Belief:
+    def _correct(self, belief: Belief, seen: Seen, dt_s: float, late: Lateness) -> Belief:
         inside, observer = belief.inside, self.observer(belief)
-        off_in, off_psi = seen.position_in - inside.x, seen.pressure_psi - inside.p
+        since_in = belief.went_in(late.known_s / dt_s) if late.known_s else 0.0
+        off_in, off_psi = seen.position_in - (inside.x - since_in), seen.pressure_psi - inside.p
         belief = self._noise(belief, off_in, off_psi)
         noise_psi = 4.0 * belief.noise_psi
         p = inside.p + max(0.3, off_psi * off_psi / (off_psi * off_psi + noise_psi * noise_psi)) * off_psi
         pushed = any(observer.contact(inside)) and not _stopped(belief, inside)
         w = inside.w + (belief.compliance * (p - inside.p) if pushed else 0.0)
         inside = observer.on_stop(replace(observer.learn_converter(inside, off_psi, seen, dt_s), p=p, w=w))
-        variance = 2.0 * belief.noise_in * belief.noise_in  # half of the noise is slow: counted double
+        doubt_in = LATE_DOUBT * since_in
+        variance = 2.0 * belief.noise_in * belief.noise_in + doubt_in * doubt_in  # half of the noise is slow: double
         cov = _square(belief.spread)
         learns = W if _stopped(belief, inside) else SIZE if off_in * off_in < 9.0 * (cov[X][X] + variance) else K
-        mean, cov = considered(_mean(inside, belief), cov, ((X, 1.0),), off_in, variance, learns)
+        mean = _mean(inside, belief)
+        if not late.awaited:
+            mean, cov = considered(mean, cov, ((X, 1.0),), off_in, variance, learns)
         near = replace(inside, w=mean[W], a1=mean[A1], a2=mean[A2])
         w = observer.on_stop(near).w
         mean[W] = mean[T] if w >= belief.travel - 1e-9 else min(w, mean[T])

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from control.aims import parked_psi, stop_psi
 from control.controller import Law, Seen
 from control.exact import lag
+from control.lateness import Lateness
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
+from control.resting import Resting, in_vain, way_of_stroke
 
 GIVEN_UP = 99  # turns after which a target is left alone
 
@@ -19,7 +21,7 @@ class BrakeState:
     it has not changed [s]; the belief when the edges were last known well; whether the valve sticks; how often it has
     been turned back or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how
     long the drive has lasted [s], and from where [in]; edge [psi], play output [in] and doubt of the edge [psi] when
-    the pushing began."""
+    the pushing began; what the readings say of the rest since the last drive; how late they are."""
 
     belief: Belief
     target_in: float
@@ -34,6 +36,8 @@ class BrakeState:
     driven_s: float = 0.0
     from_in: float = 0.0
     mark: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    rest: Resting = field(default_factory=Resting)
+    late: Lateness = field(default_factory=Lateness)
 
 
 @dataclass(frozen=True)
@@ -47,8 +51,9 @@ class Brake(Law[BrakeState]):
     small leaks move nothing. Sticking: where the pressure has gone `grip_psi` and `surely` standard deviations beyond
     an edge and nothing has moved, or on and on without the play output coming along, small pushes are given up, and
     what they seemed to teach is forgotten; from then on every correction is a stroke of `stroke_psi` beyond the edge
-    and back, which slides from start to end, after `look_s` of rest; at most `strokes` per target, and none that takes
-    longer than `stroke_s`: what is left then, stays. Each time of turning back makes it more tolerant.
+    and back, which slides from start to end, after `look_s` of rest, and turns round only `free_psi` beyond the edge,
+    where the plate has let go; at most `strokes` per target, and none that takes longer than `stroke_s`; what was left
+    alone for `while_s` stays, unless it is larger than a new miss may be. Each turn makes it more tolerant.
     """
 
     tolerance_in: float = 0.0007
@@ -64,36 +69,43 @@ class Brake(Law[BrakeState]):
     stroke_psi: float = 0.45
     strokes: float = 6.0
     stroke_s: float = 1.5
+    free_psi: float = 0.33
+    while_s: float = 6.0
 
     def start(self, seen: Seen, target_in: float) -> BrakeState:
         return BrakeState(self._filter.start(seen), seen.position_in, seen.commanded_psi)
 
     def law(self, state: BrakeState, seen: Seen, target_in: float, dt_s: float) -> tuple[BrakeState, float]:
-        keep, soon = self._filter.track(state.belief, seen, dt_s)
+        keep, soon = self._filter.track(state.belief, seen, dt_s, state.late)
         fresh, before_psi = abs(target_in - state.target_in) > 1e-4, state.aim_psi
         state = replace(state, belief=keep, target_in=target_in)
-        state, soon = self._gripped(replace(state, turns=0, pushes=0) if fresh else state, soon)
+        state = replace(state, turns=0, pushes=0, rest=Resting()) if fresh else state
+        rest = state.rest.read(*(place_in - target_in for place_in in (seen.position_in, soon.inside.x, soon.inside.w)))
+        state, soon = self._gripped(replace(state, rest=Resting() if state.drive else rest), soon)
+        late = state.late.read(self._filter.observer(soon), seen.position_in, seen.pressure_psi, dt_s)
         drive = self._begun(state, soon, fresh)
+        if drive and not state.drive:
+            late = late.begun(drive, soon.inside, soon.edge_psi(soon.inside.x, drive), target_in, seen.pressure_psi)
+        state = replace(state, late=late)
         after = self._driving(state, soon, drive, fresh, dt_s) if drive else self._settling(state, soon)
         quiet_s = state.quiet_s + dt_s if after.aim_psi == before_psi else 0.0
         driven_s = state.driven_s + dt_s if after.drive else 0.0
-        command_psi = self._command_psi(soon.inside, after.aim_psi, dt_s, self._calm(after))
+        calm = after.turns > 2 and not (after.drive or after.sticks)  # beyond the aim, then, costs more than it gains
+        command_psi = self._command_psi(soon.inside, after.aim_psi, dt_s, calm)
         return replace(after, quiet_s=quiet_s, driven_s=driven_s), command_psi
-
-    def _calm(self, state: BrakeState) -> bool:
-        """Whether the pressure may take its time: after some turns, to go beyond the aim costs more than it gains."""
-        return state.turns > 2 and not state.drive and not state.sticks
 
     def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
         stroke = state.sticks and turns > 0
         from_in = state.from_in if state.drive else soon.inside.x
-        aim_psi, drive = self._driven(soon, state, drive, dt_s, stroke and not state.drive)
+        gone_psi = drive * (soon.inside.p - soon.edge_psi(from_in, drive))
+        held = stroke and (not state.drive or gone_psi < self.free_psi)
+        aim_psi, drive = self._driven(soon, state, drive, dt_s, held)
         after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False, from_in=from_in)
         still = abs(soon.inside.x - from_in) < 2.0 * self.again_in
         if stroke and state.driven_s > self.stroke_s and still:  # what it seemed to teach is forgotten
             return replace(after, drive=0, turns=GIVEN_UP, belief=_with_edges(state.belief, state.found))
-        return replace(after, found=soon if not drive else state.found if stroke else None)
+        return replace(after, found=soon if not drive else state.found if stroke else None, rest=Resting())
 
     def _settling(self, state: BrakeState, soon: Belief) -> BrakeState:
         target_in, pushes, was_pushing = state.target_in, state.pushes, state.pushing
@@ -134,19 +146,14 @@ class Brake(Law[BrakeState]):
         closing_psi = soon.inside.p - was.inside.a1 - rest_psi - self.surely * was.edge_doubt_psi(1)
         opening_psi = was.inside.a2 + rest_psi - soon.inside.p - self.surely * was.edge_doubt_psi(-1)
         enough_psi = max(self.grip_psi, 7.0 * soon.noise_psi)
-        if max(closing_psi, opening_psi) > enough_psi or self._in_vain(state, soon, enough_psi):
+        shown = state.rest.swung(soon.noise_in) or state.rest.stays(soon, was, state.target_in, self.surely)
+        vain = in_vain(soon, state.mark, state.pushes, state.late.known_s > 0.0)
+        if shown or vain or max(closing_psi, opening_psi) > enough_psi:
             belief = _with_edges(state.belief, was)
             return replace(state, sticks=True, turns=0, belief=belief), _with_edges(soon, was)
         now_psi, was_psi = (b.edge_doubt_psi(1) + b.edge_doubt_psi(-1) for b in (soon, was))
         calm = state.quiet_s > 1.5 and abs(state.pushes) < 2
         return (replace(state, found=soon) if now_psi < 0.5 * was_psi and calm else state), soon
-
-    def _in_vain(self, state: BrakeState, soon: Belief, enough_psi: float) -> bool:
-        """Whether pushing the same way again and again has taken the pressure so far, and the play output nowhere."""
-        way = _sign(state.pushes)
-        went_psi, went_in = way * (soon.inside.p - state.mark[0]), way * (soon.inside.w - state.mark[1])
-        visible_psi = 1.5 * enough_psi + state.mark[2]
-        return abs(state.pushes) > 3 and went_psi > visible_psi and went_in < 0.3 * soon.compliance * went_psi
 
     def _begun(self, state: BrakeState, soon: Belief, fresh: bool) -> int:
         """The way to drive, 0 for none: to a new target, back to one that was missed, or as a stroke."""
@@ -159,11 +166,17 @@ class Brake(Law[BrakeState]):
             return way if abs(miss_in) > self.band_in else 0
         again_in = self.again_in * (1.0 if state.sticks else max(0.125 * state.turns, 1.0))
         far = abs(miss_in) > again_in and way * off_in > again_in + 2.0 * soon.doubt_in
-        if far and state.turns < GIVEN_UP:
-            return way
-        enough_in = 0.5 * self.tolerance_in + self._allowed_in(soon, 0)
-        stroke = state.sticks and state.quiet_s > self.look_s and state.turns < self.strokes
-        return _sign(off_in) if stroke and abs(off_in) > enough_in else 0
+        if not state.sticks:
+            return way if far and state.turns < GIVEN_UP else 0
+        lands = abs(state.aim_psi - soon.inside.p) > 0.2
+        if (far and not lands and state.turns < GIVEN_UP) or self._worth_a_stroke(state, soon, off_in):
+            return way_of_stroke(soon, off_in, soon.compliance * self.stroke_psi)
+        return 0
+
+    def _worth_a_stroke(self, state: BrakeState, soon: Belief, off_in: float) -> bool:
+        """Whether a miss is: beyond doubt and, after a while, larger than what was left alone until then."""
+        enough_in = (1.5 if state.quiet_s < self.while_s else 2.2) * self.tolerance_in + 2.0 * soon.doubt_in
+        return state.quiet_s > self.look_s and state.turns < self.strokes and abs(off_in) > enough_in
 
     def _driven(self, soon: Belief, state: BrakeState, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
         """The aim of the next tick [psi], and whether the drive goes on after it. It brakes a little short, because

@@ -13,6 +13,8 @@ from app.physics_bench import open_virtual
 from control.controller import Seen
 from control.controllers.brake import GIVEN_UP, Brake, BrakeState
 from control.design import DesignModel
+from control.late_gauge import with_late_gauge
+from control.resting import Resting
 
 DESIGN = DesignModel()
 TICK_S = 0.1
@@ -23,9 +25,10 @@ def hold(
     effects: Mapping[str, float] | None = None,
     numbers: Mapping[str, float] | None = None,
     seed: int = 4,
+    late_s: float = 0.0,
 ) -> tuple[BrakeState, npt.NDArray[np.float64]]:
     """The last state, and the true stem of every tick, shape (targets, ticks of 40 s) [% of travel off its target]."""
-    opened, law = open_virtual(seed, effects=effects, numbers=numbers), Brake(DESIGN)
+    opened, law = with_late_gauge(open_virtual(seed, effects=effects, numbers=numbers), late_s), Brake(DESIGN)
     assert opened.truth_in is not None
     sample = opened.bench.exchange(0.0)
     state, stems = law.initial(sample, targets[0]), np.empty(400 * len(targets))
@@ -107,3 +110,39 @@ def test_an_edge_that_is_not_known_is_not_taken_for_sticking(doubt_psi: float, s
     inside = state.belief.inside
     mark = (inside.p - 0.12, inside.w, doubt_psi)
     assert next_move(target_in=0.2, pushes=4, mark=mark, found=state.belief).sticks == sticks
+
+
+def test_a_stroke_turns_round_only_when_the_plate_has_let_go() -> None:
+    """Else it does not move at all, and what is believed of it is wrong."""
+    in_the_gap = {"sticks": True, "turns": 1, "drive": 1, "from_in": 0.2}
+    assert next_move(target_in=0.2, **in_the_gap).drive == 1
+    assert next_move(target_in=0.2, **in_the_gap | {"sticks": False}).drive == 0
+
+
+@pytest.mark.parametrize(("quiet_s", "strokes"), [(3.0, True), (9.0, False)])
+def test_what_has_been_left_alone_stays(quiet_s: float, strokes: bool) -> None:
+    """A stroke late in a hold costs more than a miss that was let pass before."""
+    belief = hold([0.2])[0].belief
+    target_in = belief.inside.w + 1.85 * Brake(DESIGN).tolerance_in + 2.0 * belief.doubt_in
+    assert bool(next_move(target_in=target_in, sticks=True, quiet_s=quiet_s).drive) == strokes
+
+
+def test_a_long_swing_through_the_target_shows_that_it_sticks() -> None:
+    found = hold([0.2])[0].belief
+    assert next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.008, high_in=0.009)).sticks
+    assert not next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.001, high_in=0.009)).sticks
+
+
+@pytest.mark.parametrize("late_s", [0.2, 0.3])
+def test_late_readings_are_not_taken_for_sticking(late_s: float) -> None:
+    """From the first move on it knows how late they are, and lands all the same."""
+    state, off = hold([0.14, 0.42, 0.28], late_s=late_s)
+    assert not state.sticks
+    assert state.late.late_s == pytest.approx(late_s, abs=0.05)
+    assert np.abs(off[:, 300:]).max() < 0.3
+
+
+def test_sticking_is_noticed_through_late_readings() -> None:
+    state, off = hold([0.17, 0.39, 0.28, 0.31, 0.3, 0.5], effects={"stiction": 0.3}, late_s=0.3)
+    assert state.sticks
+    assert np.median(np.abs(off[2:, 300:].mean(axis=1))) < 0.3

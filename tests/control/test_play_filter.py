@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 import numpy.typing as npt
@@ -11,6 +12,7 @@ import pytest
 from app.physics_bench import open_virtual
 from control.controller import Seen
 from control.design import DesignModel
+from control.lateness import Lateness
 from control.play_filter import Belief, PlayFilter
 
 DESIGN = DesignModel()
@@ -28,7 +30,7 @@ def watch(
     watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
     belief = watcher.start(seen(sample))
     for tick, command_psi in enumerate(stairs):
-        belief, _ = watcher.track(belief, seen(sample), TICK_S)
+        belief, _ = watcher.track(belief, seen(sample), TICK_S, Lateness())
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(float(command_psi))
     state = opened.bench.physics.state  # type: ignore[attr-defined]
@@ -98,8 +100,14 @@ def test_a_rest_on_a_stop_teaches_nothing() -> None:
     watcher, sample = PlayFilter(DESIGN), opened.bench.exchange(0.0)
     belief = first = watcher.start(seen(sample))
     for tick in range(200):
-        belief, _ = watcher.track(belief, seen(sample), TICK_S)
+        belief, _ = watcher.track(belief, seen(sample), TICK_S, Lateness())
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(2.0)
     assert (belief.inside.a1, belief.inside.a2) == (first.inside.a1, first.inside.a2)
     assert np.all(np.linalg.eigvalsh(np.array(belief.spread).reshape(7, 7)) > -1e-12)
+
+
+@pytest.mark.parametrize(("ticks", "went_in"), [(0.0, 0.0), (0.5, 2.0), (2.25, 6.25), (9.0, 7.0)])
+def test_how_far_the_stem_went_lately(ticks: float, went_in: float) -> None:
+    belief = replace(PlayFilter(DESIGN).start(Seen(0.2, 8.3, 8.3)), went=(4.0, 2.0, 1.0))
+    assert belief.went_in(ticks) == went_in
