@@ -190,7 +190,7 @@ class Form:
     where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
     recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
-    doubt.
+    doubt. What is `described` is for design models of real machines and never a candidate.
     """
 
     name: str
@@ -200,6 +200,7 @@ class Form:
     once: bool = False
     apart: int = 0
     seen: bool = False
+    described: bool = False
 
 
 @dataclass(frozen=True, slots=True)

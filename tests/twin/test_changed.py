@@ -119,3 +119,6 @@ def test_numbers_that_say_how_an_effect_acts_are_settled_by_the_file() -> None:
     causes = effect_causes(position_channel(case.trials, case.sigma_y), case.base)
     assert "friction_in_motion" not in {c.name for c in causes}
     assert "distributed_hysteresis" in {c.name for c in causes}
+    plain = effect_causes(position_channel(case.trials, case.sigma_y), Plant(DesignModel()))
+    forms = {c.form.name for c in plain if c.name == "friction_in_motion" and c.form is not None}
+    assert "partial" in forms and "elastic" not in forms

@@ -31,6 +31,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
         if not (form.once and several)
         and (not form.apart or 2 <= records <= form.apart)
         and (refreshed or not form.seen)
+        and not form.described
     ]
 
 

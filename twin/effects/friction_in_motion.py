@@ -105,7 +105,7 @@ EFFECT = Effect(
     forms=(
         Form("full", (), _full),
         Form("partial", (_SHARE,), _partial),
-        Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic),
+        Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic, described=True),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),
     ),

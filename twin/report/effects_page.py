@@ -51,8 +51,9 @@ def _section(one: Effect) -> str:
 def _rows(form: Form) -> list[str]:
     if not form.parameters:
         return [f"| {form.name} | | | | | there or not, without a number |"]
+    name = f"{form.name} (design models only)" if form.described else form.name
     return [
-        f"| {form.name} | {p.name} | {Scales().unit(p.kind)} | {p.lower:g} .. {p.upper:g} | "
+        f"| {name} | {p.name} | {Scales().unit(p.kind)} | {p.lower:g} .. {p.upper:g} | "
         f"{f'{p.neutral:g}' if p.size else 'shape'} | {p.doc} |"
         for p in form.parameters
     ]
