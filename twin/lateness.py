@@ -23,6 +23,8 @@ from twin.plant import Inserted
 TIMING = 0.2
 #: Mean squared residual, noise = 1, that may be left; and by how many nats the delay has to fit better.
 _LEFT, _CLEARLY = 4.0, 12.0
+#: ... and of the design as it is, below which nobody would be blamed for anything.
+_BLAMED = 1.05
 
 
 def late_commands(case: Case) -> tuple[tuple[Inserted, ...], list[DataNote]]:
@@ -30,6 +32,8 @@ def late_commands(case: Case) -> tuple[tuple[Inserted, ...], list[DataNote]]:
     if case.sigma_p is None or any(i.effect == "dead_time" for i in case.base.inserted):
         return (), []
     channel = pressure_channel(case.trials, case.sigma_p)
+    if fit(channel, make_space(case.base, (), (), case.scales), [np.zeros(0)]).mse < _BLAMED:
+        return (), []
     form = effect("dead_time").form("pure_delay")
     late = Cause("dead_time", effect("dead_time"), form)
     with_lag = make_space(case.base, (), ("ep_tau",), case.scales, ACCUSED_SPREAD)

@@ -67,7 +67,8 @@ V_TARGET_CREEPS = 34  # 1: what creeps is the target of the stem, before its lag
 V_SHORT = 35  # how far friction holds the stem from its target at no speed; falls as V_STRIBECK_SPEED says [position]
 V_REMEMBERS = 36  # 1: what the slow tails have of what was before holds the stem off its target at the start
 V_PRESLIDING = 37  # distance after which all of the friction in the force balance has turned [position]
-V_COUNT = 38
+V_INERTIA_S = 38  # time constant with which the speed of the stem follows what pulls it [s]
+V_COUNT = 39
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

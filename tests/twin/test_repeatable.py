@@ -105,6 +105,11 @@ def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> Non
     assert late[0].values[0] == pytest.approx(0.008, abs=0.002)
     assert "ms after their rows' time" in notes[0].what
     assert late_commands(make_case([recorded(0.0)], DESIGN)) == ((), [])
+    late_and_noisy = recorded(0.0, 0.008)
+    assert late_and_noisy.pressure is not None
+    noise = np.random.default_rng(1).normal(0.0, 0.02, late_and_noisy.n)
+    unblamed = replace(late_and_noisy, pressure=late_and_noisy.pressure + noise)  # the design explains it to its noise
+    assert late_commands(make_case([unblamed], DESIGN)) == ((), [])
     assert late_commands(make_case([recorded(0.0, 0.25)], DESIGN)) == ((), [])
 
 

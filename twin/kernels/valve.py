@@ -13,6 +13,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.kernels.coupled import coupled_start, coupled_steps
 from twin.kernels.elastic import elastic_start, elastic_steps
+from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
@@ -31,6 +32,7 @@ from twin.slots import (
     V_HELD,
     V_HIGH,
     V_IN_MOTION,
+    V_INERTIA_S,
     V_LOW,
     V_OUTER,
     V_OUTER_CENTRE,
@@ -54,6 +56,8 @@ from twin.slots import (
 
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT]
 _STIFF = [V_BREAKAWAY, V_STRIBECK, V_HELD, V_SHORT, V_TAU_AFTER_S]
+#: A speed that follows within so short a time follows at once [s].
+_AT_ONCE_S = 1e-4
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
@@ -88,6 +92,15 @@ def couples(c: FloatArray, bends: Bends) -> bool:
     return bool(c[_COUPLING].any() or bends[0].size > 1)
 
 
+def coupled_coefficients(c: FloatArray) -> FloatArray:
+    """What the loops for target and stem that act on each other are given: to them inertia is a second lag."""
+    if c[V_INERTIA_S] <= _AT_ONCE_S:
+        return c
+    slower = c.copy()
+    slower[V_TAU_AFTER_S] += c[V_INERTIA_S]
+    return slower
+
+
 def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]], Callable[..., None]]:
     """Start and steps of the loop for target and stem that act on each other.
 
@@ -118,6 +131,7 @@ def _stem(
     at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
     if couples(c, bends):
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
+        c = coupled_coefficients(c)
         what = (c, stops, tables, plays, bends)
         begin, steps = coupling(c)
         state, elements = begin(float(force[0]), float(widening[0]), *what, (start[0], at))
@@ -127,8 +141,20 @@ def _stem(
         if c[V_TARGET_CREEPS] != 0.0:
             _creep(time_s, offsets, c, held, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
-        lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
-        stem_pass(time_s, offsets, target, lags_s, rates, low, high, start[0], out)
+        move_stem(time_s, offsets, target, c, np.array([start[0], 0.0]), out)
+
+
+def move_stem(
+    time_s: FloatArray, offsets: np.ndarray, target: FloatArray, c: FloatArray, state: FloatArray, out: FloatArray
+) -> None:
+    """Fills `out` with the stem that follows `target`; moves `state` (stem, speed) on."""
+    low, high = stem_stops(c)
+    lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
+    if c[V_INERTIA_S] > _AT_ONCE_S:
+        inertia_pass(time_s, offsets, target, lags_s, rates, np.array([low, high]), c[V_INERTIA_S], state, out)
+    else:
+        stem_pass(time_s, offsets, target, lags_s, rates, low, high, state[0], out)
+        state[0] = out[-1]
 
 
 def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:

@@ -7,7 +7,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels.play import common_start
-from twin.kernels.valve import coupling
+from twin.kernels.valve import coupled_coefficients, coupling
 from twin.plant import curve_tables
 from twin.slots import V_HIGH, V_LOW, stem_stops
 
@@ -16,7 +16,7 @@ class Stuck:
     """Stem with friction in its own motion; `x0`: the stem, `w0`: the play output at the start."""
 
     def __init__(self, c: Coefficients, x0: float, w0: float) -> None:
-        v = c.valve
+        v = coupled_coefficients(c.valve)
         stops = np.array([v[V_LOW], v[V_HIGH], *stem_stops(v)])
         first, step, closing, opening = curve_tables(c)
         tables = (float(first), float(step), closing, opening)

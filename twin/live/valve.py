@@ -10,7 +10,6 @@ from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels import valve as kernels
 from twin.kernels.play import common_start, plain_play, play_target
-from twin.kernels.stem import stem_pass
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
 from twin.plant import curve_tables
@@ -29,16 +28,11 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
-    V_RATE_CLOSE,
-    V_RATE_OPEN,
     V_STEP,
     V_STEP_TIME_S,
     V_TARGET_CREEPS,
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
-    V_TAU_CLOSE_S,
-    V_TAU_OPEN_S,
-    stem_stops,
 )
 
 
@@ -137,9 +131,7 @@ class Sliding:
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
         self._tails = tails
         self._after = Lag(float(v[V_TAU_AFTER_S]))
-        self._lags_s, self._rates = v[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], v[[V_RATE_CLOSE, V_RATE_OPEN]]
-        self._low, self._high = stem_stops(v)
-        self._x = x0
+        self._c, self._moving = v, np.array([x0, 0.0])
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
@@ -153,8 +145,7 @@ class Sliding:
             target += weight * one
         target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
         out = np.empty(force.size)
-        stem_pass(time_s, offsets, target, self._lags_s, self._rates, self._low, self._high, self._x, out)
-        self._x = float(out[-1])
+        kernels.move_stem(time_s, offsets, target, self._c, self._moving, out)
         return out
 
 
