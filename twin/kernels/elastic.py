@@ -134,6 +134,36 @@ def _held_step(
     return x, friction
 
 
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _bend(
+    x: float, place: tuple[float, float], more: FloatArray, less: FloatArray, softer: FloatArray
+) -> tuple[float, float, float]:
+    """Extra pressure closing and opening, and relative compliance, where the stem is."""
+    if more.size < 2:
+        return 0.0, 0.0, 1.0
+    return _curve_at(x, place, more), _curve_at(x, place, less), _curve_at(x, place, softer)
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _freely(
+    x: float,
+    h: float,
+    between: tuple[float, float],
+    stops: tuple[float, float, float, float],
+    stays: tuple[float, float],
+    rates: tuple[float, float],
+    friction: float,
+) -> tuple[float, bool]:
+    """The stem after `h` where every spring slips already on its way, and whether they do; `stays`: decays over `h`."""
+    closes = friction > 0.0
+    target = max(stops[0], min(stops[1], between[0] if closes else between[1]))
+    if abs(friction) < 1.0 - _SAME or (target < x if closes else target > x):
+        return x, False
+    if closes:
+        return min(max(x, stops[3]), x + min((target - x) * (1.0 - stays[0]), rates[0] * h)), True
+    return max(min(x, stops[2]), x + max((target - x) * (1.0 - stays[1]), -rates[1] * h)), True
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def elastic_steps(
     time_s: FloatArray,
@@ -153,26 +183,24 @@ def elastic_steps(
     grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
     more_at, less_at, softer_at = bends
     slips = stretches(c[V_PRESLIDING])
-    bent, place = more_at.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    place = (0.0, (more_at.size - 1) / c[V_TRAVEL])
     ends, varies = (stops[0], stops[1], stops[2], stops[3]), widening.size > 1
     lags_s, rates, wear = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN]), c[V_WEAR]
+    last_h, stays = -1.0, (0.0, 0.0)
     x, travelled, friction = state[0], state[1], _stretched(0.0, held, slips)
     out[0] = x
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        if abs(h - last_h) > _SAME * h:
+            last_h, stays = h, (np.exp(-h / max(lags_s[0], 1e-12)), np.exp(-h / max(lags_s[1], 1e-12)))
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            more, softer = widening[f if varies else 0] + wear * travelled, 1.0
-            less = more
-            if bent:
-                more, less = more + _curve_at(x, place, more_at), less - _curve_at(x, place, less_at)
-                softer = _curve_at(x, place, softer_at)
-            middle = 0.5 * (force[f - 1] + force[f])
-            between = (
-                softer * _curve_at(middle - more, grid, closing),
-                softer * _curve_at(middle + less, grid, opening),
-            )
-            new, friction = _held_step(x, h, between, ends, lags_s, rates, held, slips, friction)
-            travelled += abs(new - x)
-            x = new
-            out[f] = x
+            p, wide = 0.5 * (force[f - 1] + force[f]), widening[f if varies else 0] + wear * travelled
+            more, less, softer = _bend(x, place, more_at, less_at, softer_at)
+            down, up = p - wide - more, p + wide - less
+            between = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
+            out[f], free = _freely(x, h, between, ends, stays, rates, friction)
+            if not free:
+                out[f], friction = _held_step(x, h, between, ends, lags_s, rates, held, slips, friction)
+            travelled += abs(out[f] - x)
+            x = out[f]
     state[0], state[1] = x, travelled
