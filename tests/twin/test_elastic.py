@@ -130,3 +130,34 @@ def test_row_by_row_it_is_the_same(change: Callable[[object], None]) -> None:
 def test_there_are_many_short_springs_and_few_long_ones() -> None:
     slips = stretches(0.1)
     assert slips.size == SPRINGS and np.all(np.diff(np.diff(slips)) > 0.0) and slips[-1] < 0.1
+
+
+def test_coarse_steps_give_the_same_stem() -> None:
+    """Springs are stiff against the lag; what they hold is stepped exactly."""
+    assert np.max(np.abs(stem(plant(0.06), step_s=0.05) - stem(plant(0.06), step_s=0.005))) < 0.001 * 0.5625
+    rows = slice(None, None, 10)
+    coarse = stem(plant(0.06), TIME_S[rows], PRESSURE[rows], step_s=0.5)
+    assert np.max(np.abs(coarse - stem(plant(0.06))[rows])) < 0.02 * 0.5625
+
+
+@pytest.mark.parametrize("reach", [0.001, 0.06])
+def test_stops_hold_the_stem_and_not_what_pulls_it(reach: float) -> None:
+    """Forces that would balance beyond a stop: the stem meets it at speed, and stays within."""
+    soft = Inserted("friction_in_motion", effect("friction_in_motion").form("elastic"), (reach, 0.05, 0.05))
+    rigid = Inserted("friction_in_motion", soft.form, (reach, 0.0, 0.0))
+    pressure = np.interp(TIME_S, [0, 10, 30, 35, 60], [4.0, 13.0, 13.0, 4.0, 4.0])
+    grid = make_grid(TIME_S, 0.02)
+    fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S), TIME_S, pressure)
+    met, crept = (
+        stem_response(Plant(DesignModel(), (one,)).coefficients(60.0), grid, fine, 0.0, 0.0)[grid.offsets]
+        for one in (soft, rigid)
+    )
+    assert met.min() == 0.0 and met.max() == DesignModel().travel
+    arrival = TIME_S[np.argmax(met >= DesignModel().travel)]
+    assert arrival < 30.0 and crept[arrival + 0.1 > TIME_S].max() < DesignModel().travel - 0.002
+
+
+def test_a_fault_adds_to_the_distance_that_the_design_has() -> None:
+    own = Inserted("friction_in_motion", effect("friction_in_motion").form("elastic"), (0.01, 0.0, 0.0))
+    fault = Inserted("distributed_hysteresis", effect("distributed_hysteresis").form("turns_over_a_distance"), (0.03,))
+    assert Plant(DesignModel(), (own, fault)).coefficients(9.0).valve[V_PRESLIDING] == pytest.approx(0.04)

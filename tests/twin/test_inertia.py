@@ -11,6 +11,7 @@ from scipy.integrate import solve_ivp
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.catalog import effect
+from twin.kernels.inertia import inertia_pass
 from twin.kernels.valve import coupled_coefficients
 from twin.plant import Inserted, Plant, stem_response
 from twin.slots import V_INERTIA_S, V_TAU_AFTER_S
@@ -76,3 +77,28 @@ def test_beside_what_acts_on_the_target_it_is_a_second_lag() -> None:
     assert c.valve[V_INERTIA_S] == 0.7
     assert coupled_coefficients(c.valve)[V_TAU_AFTER_S] == pytest.approx(0.7)
     assert c.valve[V_TAU_AFTER_S] == 0.0
+
+
+def test_the_stop_takes_the_speed() -> None:
+    """Else the stem would stay at it while the pull is already back."""
+    time_s = np.array([0.0, 0.1])
+    offsets, out, state = np.array([0, 5]), np.empty(6), np.array([0.5, 0.3])
+    inertia_pass(
+        time_s, offsets, np.full(6, 0.5), np.full(2, 2.7), np.full(2, 0.12), np.array([0.0, 0.5]), 2.0, state, out
+    )
+    assert np.all(out == 0.5) and state[1] == 0.0
+
+
+def test_coarse_steps_give_the_same_swing() -> None:
+    """Second order: what a step of 0.1 s gets wrong is small against what its length would suggest."""
+    rows = slice(None, None, 2)
+    plant = Plant(
+        replace(DesignModel(), travel=2.0),
+        (Inserted("additional_lag", effect("additional_lag").form("inertia"), (2.0,)),),
+    )
+    found = []
+    for step_s in (0.1, 0.005):
+        grid = make_grid(TIME_S[rows], step_s)
+        fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S[rows]), TIME_S, PRESSURE)
+        found.append(stem_response(plant.coefficients(60.0), grid, fine, 0.5, 0.5)[grid.offsets])
+    assert np.max(np.abs(found[0] - found[1])) < 0.004
