@@ -13,6 +13,7 @@ from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
+from twin.choose.trim import spoken
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
@@ -105,7 +106,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     settings = replace(settings, rules=rules)
     result = judge(look, settings.search, settings.rules, progress, watch=known.searches.append)
     sure = tuple(settled(d, settings.rules, settings.weights) for d in result.decisions)
-    result = replace(result, decisions=sure)
+    result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials, settings.seed)

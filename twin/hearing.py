@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from twin.case import Case
-from twin.choose.trim import dropped
+from twin.choose.trim import dropped, spoken
 from twin.choose.weigh import Weights
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, heldout_parts, idle_cause
@@ -41,7 +41,8 @@ class Hearing:
             decisions = tuple(dropped(d, idle) if idle in d.names else d for d in result.decisions)
             if any(d is None for d in decisions):
                 break
-            result = replace(result, decisions=tuple(d for d in decisions if d is not None))
+            left = tuple(d for d in decisions if d is not None)
+            result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
             judgement = self.judgement(result)
             parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, judgement, parts

@@ -17,7 +17,7 @@ from twin.case import Margin
 from twin.catalog import effect
 from twin.choose.decide import DecisionRules, _likely_floor, decide, plainer
 from twin.choose.findings import Findings
-from twin.choose.trim import trimmed
+from twin.choose.trim import spoken, trimmed
 from twin.choose.weigh import Weights
 from twin.closure import rms
 from twin.diagnose import Settings, diagnose
@@ -167,3 +167,15 @@ def test_what_a_healthy_machine_does_anyway_is_not_named() -> None:
         causes = diagnose([record], DESIGN, settings=Settings(margin=margin)).diagnosis.causes
         assert ("creep" in {c.name for c in causes}) is told
         assert told or [c.name for c in causes] == ["parameter:offset"]
+
+
+def test_a_guess_beside_what_is_sure_is_not_spoken() -> None:
+    """Four causes that fit a small rest equally well: naming one would be wrong three times out of four."""
+    fits = {(name,): (1.0, 1000.0) for name in ("linkage_lost_motion", "stiction", "creep", "friction_drift")}
+    alike, lone = findings_of(fits, 20.0), findings_of({("creep",): (1.0, 1000.0)}, 20.0)
+    guess = replace(decide(alike, RULES), accepted=alike.fits[0], explained=True, rest=0.0)
+    sure = replace(decide(lone, RULES), accepted=lone.fits[0], explained=True, rest=0.0)
+    assert [d.names for d in spoken((sure, guess), Weights(), False)] == [("creep",), ()]
+    assert [d.names for d in spoken((guess,), Weights(), True)] == [()]
+    assert spoken((guess,), Weights(), False) == (guess,)  # nothing is sure: whether it is upheld is decided later
+    assert spoken((sure,), Weights(), True) == (sure,)

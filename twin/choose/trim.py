@@ -6,7 +6,7 @@ none of them reaches an even chance. Naming one would be wrong more often than r
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from twin.catalog import effects
@@ -60,3 +60,26 @@ def _without(decision: Decision, name: str) -> Fit | None:
     kept = sorted(set(decision.names) - {name})
     fits = [f for f in decision.findings.fits if sorted(f.names) == kept]
     return max(fits, key=decision.findings.score, default=None)
+
+
+def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple[Decision, ...]:
+    """The decisions without a channel's only cause where that is a guess, and something else is sure.
+
+    `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
+    equally well; naming one of them would be wrong more often than right.
+    """
+    guesses = [_guess(d, weights) for d in decisions]
+    sure = seen or any(d.names and not guess for d, guess in zip(decisions, guesses, strict=True))
+    kept = []
+    for decision, guess in zip(decisions, guesses, strict=True):
+        without = dropped(decision, guess) if guess and sure else None
+        kept.append(decision if without is None else without)
+    return tuple(kept)
+
+
+def _guess(decision: Decision, weights: Weights) -> str:
+    """The name of a channel's only cause if it is, with its twins, less likely than not; else nothing."""
+    if len(decision.names) != 1:
+        return ""
+    [name] = decision.names
+    return name if belief(name, weigh(decision, weights).probability) < LIKELY else ""
