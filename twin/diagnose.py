@@ -21,7 +21,7 @@ from twin.diagnosis import Diagnosis
 from twin.effect import Scales
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, exact, retuning_pays, upheld
+from twin.gap import GapParts, explained_to_noise, retuning_pays, upheld
 from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
@@ -119,7 +119,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     progress("held-out gap", 0.0)
     result, judgement, parts = hearing.held_out(result, known.judgement, progress)
     everything = replace(everything, decisions=result.decisions)
-    measured, wandering, plainly = case.sigma_p is not None, result.decisions[-1].floor, exact(result)
+    measured, wandering, plainly = case.sigma_p is not None, result.decisions[-1].floor, explained_to_noise(result)
     parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, measured, wandering, itself.disturbed, plainly)
     known.judgement = judgement
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))

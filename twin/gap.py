@@ -113,7 +113,8 @@ def upheld(
     without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
     needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
     `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
-    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see there.
+    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see
+    `explained_to_noise`.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -150,7 +151,7 @@ def _doubted(judgement: Judgement) -> bool:
     return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
 
 
-def exact(result: StageResult) -> bool:
+def explained_to_noise(result: StageResult) -> bool:
     """Whether what was accepted explains all of its signals to their noise."""
     return all(d.accepted.mse <= EXACT * d.floor for d in result.decisions if d.names)
 

@@ -48,7 +48,7 @@ def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSUR
     return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
 
 
-def stepped(reach: float, h: float = 1e-4) -> FloatArray:
+def stepped(reach: float, h: float = 1e-3) -> FloatArray:
     """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops."""
     d, slips = LONG, stretches(reach)
     held, x, rows = -slips, START, [START]
@@ -161,3 +161,16 @@ def test_a_fault_adds_to_the_distance_that_the_design_has() -> None:
     own = Inserted("friction_in_motion", effect("friction_in_motion").form("elastic"), (0.01, 0.0, 0.0))
     fault = Inserted("distributed_hysteresis", effect("distributed_hysteresis").form("turns_over_a_distance"), (0.03,))
     assert Plant(DesignModel(), (own, fault)).coefficients(9.0).valve[V_PRESLIDING] == pytest.approx(0.04)
+
+
+def test_a_stem_that_springs_still_hold_stops_at_its_stop() -> None:
+    """It is pulled beyond the stop before its springs have turned: the way there ends at the stop."""
+    d, soft = (
+        DesignModel(),
+        Inserted("friction_in_motion", effect("friction_in_motion").form("elastic"), (0.3, 0.05, 0.05)),
+    )
+    x0 = d.travel - 0.001
+    grid = make_grid(TIME_S, 0.02)
+    pressure = np.where(np.arange(grid.n_fine) < 50, d.a2 + x0 / d.compliance, d.a1 + d.travel / d.compliance + 2.0)
+    x = stem_response(Plant(d, (soft,)).coefficients(60.0), grid, pressure, x0, x0)
+    assert x.max() == d.travel and x[-1] == d.travel

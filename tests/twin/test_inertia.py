@@ -43,7 +43,7 @@ def integrated(inertia_s: float) -> FloatArray:
         pull = np.clip((np.interp(t, fine_s, target) - state[0]) / d.tau_s, -d.rate_limit, d.rate_limit)
         return [state[1], (pull - state[1]) / inertia_s]
 
-    found = solve_ivp(slope, (0.0, TIME_S[-1]), [0.5, 0.0], t_eval=TIME_S, max_step=0.02, rtol=1e-7, atol=1e-9)
+    found = solve_ivp(slope, (0.0, TIME_S[-1]), [0.5, 0.0], t_eval=TIME_S, max_step=0.1, rtol=1e-6, atol=1e-8)
     return np.asarray(found.y[0])
 
 

@@ -5,22 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.lags import lag_parameter
 from twin.slots import S_LAG2_S, V_INERTIA_S, V_TAU_AFTER_S, V_TAU_BEFORE_S
 
 
 def _lag(doc: str) -> tuple[Parameter]:
-    return (
-        Parameter(
-            name="lag",
-            kind="time",
-            lower=0.0,
-            upper=8.0,
-            starts=(0.06, 0.25, 0.9, 3.0),
-            scale=0.5,
-            doc=doc,
-            usual=(0.3, 3.0),  # filling a diaphragm chamber through its tubing: tenths of a second to seconds
-        ),
-    )
+    # Filling a diaphragm chamber through its tubing: tenths of a second to seconds.
+    return lag_parameter(doc, usual=(0.3, 3.0))
 
 
 def _after(c: Coefficients, values: Sequence[float]) -> None:

@@ -71,7 +71,7 @@ def _stem_square(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _stem_seat(c: Coefficients, values: Sequence[float]) -> None:
-    _push_stem(c, values[0] * np.exp(-(1.0 - c.xi) / PEAK))
+    _stem_suction(c, (values[0], PEAK))
 
 
 def _stem_suction(c: Coefficients, values: Sequence[float]) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.lags import lag_parameter
 from twin.slots import S_LAG2_S, S_LAG_S
 
 
@@ -17,18 +18,7 @@ def _twice(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _lag(doc: str) -> tuple[Parameter]:
-    # LVDT conditioners pass some 100 Hz; what is slower is the averaging of the converter behind: tenths of a second
-    lag = Parameter(
-        name="lag",
-        kind="time",
-        lower=0.0,
-        upper=8.0,
-        starts=(0.06, 0.25, 0.9, 3.0),
-        scale=0.5,
-        doc=doc,
-        usual=(0.1, 3.0),
-    )
-    return (lag,)
+    return lag_parameter(doc, usual=(0.1, 3.0))
 
 
 EFFECT = Effect(
