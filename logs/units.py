@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 Quantity = Literal["time", "pressure", "position"]
 HOUSE_UNIT: dict[Quantity, str] = {"time": "s", "pressure": "psi", "position": "in"}
 PERCENT = "percent"
+_ATMOSPHERE_PSI = 14.696
 
 _ALIASES = {
     "psig": "psi",
@@ -80,6 +81,17 @@ def conversion(text: str, quantity: Quantity) -> Conversion:
         return Conversion(1.0 if name == PERCENT else 100.0, 0.0, PERCENT, "" if name == PERCENT else "fraction x 100")
     scale, shift = _affine(name, house, quantity, text)
     return Conversion(scale, shift, house, f"converted from {text} to {house}")
+
+
+@cache
+def atmosphere(unit: str) -> tuple[float, float]:
+    """The atmosphere's absolute pressure in `unit`, and what a gauge in it reads there.
+
+    Percent is taken for the usual 3 to 15 psi (IEC 60382).
+    """
+    if plain_name(unit) == PERCENT:
+        return 100.0 * (_ATMOSPHERE_PSI / 12.0), -25.0
+    return _ATMOSPHERE_PSI / conversion(unit, "pressure").scale, 0.0
 
 
 def is_unit(text: str, quantity: Quantity) -> bool:

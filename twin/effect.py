@@ -190,7 +190,8 @@ class Form:
     where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
     recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
-    doubt. What is `described` is for design models of real machines and never a candidate.
+    doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What is `described`
+    is for design models of real machines and never a candidate.
     """
 
     name: str
@@ -201,6 +202,7 @@ class Form:
     apart: int = 0
     seen: bool = False
     described: bool = False
+    by_pressure: bool = False
 
 
 @dataclass(frozen=True, slots=True)

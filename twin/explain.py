@@ -14,9 +14,10 @@ import numpy as np
 from control.design import DesignModel
 from control.experiment_catalog import make_experiment
 from logs.recording import FloatArray
+from twin.chain import chain_response
 from twin.effect import Effect, Form
 from twin.fit.numbers import NUMBERS, nominal, retuned
-from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
+from twin.plant import Inserted, Plant, reading_response
 from twin.timegrid import make_grid
 
 #: Experiments of `lostmotion sweep` that are tried; hold, the slowest to tell anything, last.
@@ -102,8 +103,8 @@ def _response(plant: Plant, kind: str) -> tuple[FloatArray, FloatArray]:
     time_s, command = _excitation(kind)
     grid = make_grid(time_s, _STEP_S)
     c = plant.coefficients(float(time_s[-1]))
-    pressure = pressure_response(c, grid, command, float(command[0]))
-    return pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))
+    pressure, stem = chain_response(c, grid, command, float(command[0]), 0.0, 0.0)
+    return pressure[grid.offsets], reading_response(c, grid, stem)
 
 
 @cache

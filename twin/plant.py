@@ -85,10 +85,15 @@ class Plant:
         return " with ".join([words[0], " and ".join(words[1:])] if len(words) > 1 else words)
 
 
-def pressure_response(c: Coefficients, grid: TimeGrid, command: FloatArray, p0: float) -> FloatArray:
-    """Pressure on the fine grid, shape (n_fine,), from pressure `p0` at the first row."""
+def pressure_response(
+    c: Coefficients, grid: TimeGrid, command: FloatArray, p0: float, stem: FloatArray | None = None
+) -> FloatArray:
+    """Pressure on the fine grid, shape (n_fine,), from pressure `p0` at the first row.
+
+    `stem` on the fine grid, as read, for a converter that it takes air from; None: as if it stood still.
+    """
     out = np.empty(grid.n_fine)
-    ep_kernel(grid.time_s, command, grid.offsets, c.ep, p0, out)
+    ep_kernel(grid.time_s, command, grid.offsets, c.ep, p0, stem, out)
     return out
 
 

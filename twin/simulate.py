@@ -11,8 +11,9 @@ from scipy.optimize import minimize_scalar
 from control.design import DesignModel
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
+from twin.chain import chain_response
 from twin.insert import inserted_from, plant_of
-from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
+from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at
 from twin.refresh import freshness
 from twin.slots import S_CORE, S_SEEN, V_REMEMBERS
 from twin.timegrid import TimeGrid, make_grid
@@ -68,8 +69,7 @@ def simulate_recording(
     first = start or start_of(plant, recording, grid)
     c = plant.coefficients(recording.duration_s)
     c.sensor[S_CORE], c.valve[V_REMEMBERS] = first.core, first.remembers
-    pressure = pressure_response(c, grid, recording.command, first.pressure)
-    stem = stem_response(c, grid, pressure, first.position, first.play)
+    pressure, stem = chain_response(c, grid, recording.command, first.pressure, first.position, first.play)
     fresh = freshness(recording) if c.sensor[S_SEEN] else None
     return pressure[grid.offsets], reading_response(c, grid, stem, fresh)
 
@@ -188,9 +188,9 @@ def _before(recording: Recording) -> float:
 def _miss(plant: Plant, head: Recording, grid: TimeGrid, start: Start) -> float:
     """Mean squared difference over the head, without its worst tenth, which may be false readings."""
     c = plant.coefficients(head.duration_s)
-    pressure = pressure_response(c, grid, head.command, start.pressure)
     c.sensor[S_CORE] = start.core
-    reading = reading_response(c, grid, stem_response(c, grid, pressure, start.position, start.play))
+    stem = chain_response(c, grid, head.command, start.pressure, start.position, start.play)[1]
+    reading = reading_response(c, grid, stem)
     seen = np.isfinite(head.position)
     squares = np.sort((head.position[seen] - reading[seen]) ** 2)[: max(1, int(0.9 * np.count_nonzero(seen)))]
     return float(np.mean(squares)) if squares.size else 0.0

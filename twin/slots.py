@@ -26,7 +26,14 @@ EP_CLIP = 10  # pressure that is cut off rather than aimed at [pressure]
 EP_TANK = 11  # pressure of a supply that sinks as air is drawn from it [pressure]
 EP_DRAW = 12  # by how much it sinks for each unit that the pressure rises [-]
 EP_REFILL_S = 13  # time constant with which it comes back [s]
-EP_COUNT = 14
+EP_FULL_UP = 14  # slope through a booster that is fully open, stem open [pressure/s]; FOREVER: there is no booster
+EP_FULL_DOWN = 15  # the same falling, at EP_REFERENCE
+EP_REFERENCE = 16  # [pressure]
+EP_OPEN = 17  # error at which the booster is fully open [pressure]
+EP_AIR = 18  # by how much a unit of the stem enlarges the chamber [1/position]
+EP_ATMOSPHERE = 19  # the atmosphere's absolute pressure [pressure]
+EP_AMBIENT = 20  # what a reading is at the atmosphere's [pressure]
+EP_COUNT = 21
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -116,7 +123,7 @@ def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
     c = np.zeros(EP_COUNT)
     c[[EP_GAIN, EP_REFILL_S]] = 1.0
-    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK]] = FOREVER
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN]] = FOREVER
     return c
 
 

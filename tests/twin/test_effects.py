@@ -61,6 +61,8 @@ def response(
         d.tau_s * scales.time,
         d.rate_limit * scales.position / scales.time,
         d.travel * scales.position,
+        pressure_unit=scales.pressure_unit,
+        position_unit=scales.position_unit,
     )
     plant = Plant(design, () if form is None else (Inserted(effect_name, form, values),))
     time_s, command = excitation()

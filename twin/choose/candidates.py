@@ -32,6 +32,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
         and (not form.apart or 2 <= records <= form.apart)
         and (refreshed or not form.seen)
         and not form.described
+        and (channel.name == "pressure" or not form.by_pressure)
     ]
 
 

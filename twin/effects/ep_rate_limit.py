@@ -3,9 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
+from logs.units import atmosphere
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_RATE_DOWN, EP_RATE_UP, FOREVER
+from twin.slots import (
+    EP_AIR,
+    EP_AMBIENT,
+    EP_ATMOSPHERE,
+    EP_FULL_DOWN,
+    EP_FULL_UP,
+    EP_OPEN,
+    EP_RATE_DOWN,
+    EP_RATE_UP,
+    EP_REFERENCE,
+    FOREVER,
+)
+
+#: Error at which a booster is fully open, as a share of the pressure that the travel takes: a tenth of a psi.
+_WIDE = 0.034
 
 
 def _slowness(name: str, doc: str) -> Parameter:
@@ -22,6 +38,22 @@ def _slowness(name: str, doc: str) -> Parameter:
     )
 
 
+def _through(name: str, doc: str) -> Parameter:
+    return replace(_slowness(name, doc), starts=(0.1, 0.4, 1.2))
+
+
+_AIR = Parameter(
+    name="air",
+    kind="fraction",
+    lower=0.0,
+    upper=8.0,
+    starts=(0.2, 1.5),
+    scale=2.0,
+    doc="volume that the stem sweeps over the chamber's with the stem open",
+    size=False,
+)
+
+
 def _rate(slowness: float) -> float:
     return 1.0 / slowness if slowness > 1.0 / FOREVER else FOREVER
 
@@ -35,11 +67,23 @@ def _two_rates(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_RATE_DOWN] = _rate(values[1])
 
 
+def _orifices(c: Coefficients, values: Sequence[float]) -> None:
+    if min(values[:2]) <= 1.0 / FOREVER:
+        return
+    d = c.design
+    c.ep[[EP_ATMOSPHERE, EP_AMBIENT]] = atmosphere(d.pressure_unit)
+    c.ep[EP_REFERENCE] = max(d.offset, c.ep[EP_AMBIENT] + 0.1 * c.ep[EP_ATMOSPHERE])
+    c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = _rate(values[0]), _rate(values[1])
+    c.ep[EP_OPEN] = _WIDE * d.travel / d.compliance
+    c.ep[EP_AIR] = values[2] / d.travel
+
+
 EFFECT = Effect(
     name="ep_rate_limit",
     stage="ep",
     claim="The slope of the pressure is bounded by flow capacity.",
-    equations="|dp/dt| <= 1 / slowness",
+    equations="|dp/dt| <= 1 / slowness; orifices: V dp/dt = flow - (p + p_a) dV/dt, V = 1 + air * x / travel; flow: "
+    "1 / slowness_up rising, falling with ISO 6358's outflow at p over that at the offset; in proportion near the goal",
     source="Andersen, The Analysis and Design of Pneumatic Systems (Wiley 1967); ISO 6358-1 (choked flow)",
     forms=(
         Form("symmetric", (_slowness("slowness", "least time per unit of pressure, 1 / rate limit"),), _symmetric),
@@ -50,6 +94,16 @@ EFFECT = Effect(
                 _slowness("slowness_down", "least time per unit of pressure when falling"),
             ),
             _two_rates,
+        ),
+        Form(
+            "orifices",
+            (
+                _through("slowness_up", "least time per unit of pressure when rising, with the stem open"),
+                _through("slowness_down", "the same when falling from the middle of the two curves"),
+                _AIR,
+            ),
+            _orifices,
+            by_pressure=True,
         ),
     ),
     twins=("fill_exhaust_asymmetry",),

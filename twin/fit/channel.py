@@ -13,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.chain import chain_response
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
-from twin.slots import S_CORE, V_REMEMBERS
+from twin.slots import EP_AIR, S_CORE, V_REMEMBERS
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -26,9 +27,10 @@ def predict_pressure(plant: Plant, trial: Trial) -> FloatArray:
 
 
 def pressure_fine(plant: Plant, trial: Trial) -> FloatArray:
-    """Pressure on the fine grid from the command."""
+    """Pressure on the fine grid from the command, and from the stem as it was read, should that take air."""
     c = plant.coefficients(trial.recording.duration_s, trial.place)
-    return pressure_response(c, trial.grid, trial.recording.command, trial.start_pressure)
+    stem = trial.stem if c.ep[EP_AIR] > 0.0 else None
+    return pressure_response(c, trial.grid, trial.recording.command, trial.start_pressure, stem)
 
 
 def predict_reading_given_pressure(plant: Plant, trial: Trial) -> FloatArray:
@@ -40,15 +42,19 @@ def predict_reading_given_pressure(plant: Plant, trial: Trial) -> FloatArray:
 
 def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
     """Reading at the rows from the command alone: the whole chain."""
-    return _reading(plant, trial, pressure_fine(plant, trial))
+    return _reading(plant, trial, None)
 
 
-def _reading(plant: Plant, trial: Trial, pressure: FloatArray) -> FloatArray:
+def _reading(plant: Plant, trial: Trial, pressure: FloatArray | None) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s, trial.place)
     start, c.sensor[S_CORE] = stem_at(c, trial.start_position), core_at(c, trial.start_position)
     play = start if trial.start_play is None else stem_at(c, trial.start_play)
     c.valve[V_REMEMBERS] = trial.remembers
-    return reading_response(c, trial.grid, stem_response(c, trial.grid, pressure, start, play), trial.fresh)
+    if pressure is None:
+        stem = chain_response(c, trial.grid, trial.recording.command, trial.start_pressure, start, play)[1]
+    else:
+        stem = stem_response(c, trial.grid, pressure, start, play)
+    return reading_response(c, trial.grid, stem, trial.fresh)
 
 
 @dataclass(frozen=True, slots=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
+from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray, Recording
 from twin.effect import ALONE, Place
@@ -18,6 +19,8 @@ SETTLE_S = 3.0
 #: Share of the command's span that is a step; in times of the short intervals, one in which rows are missing; the
 #: largest share of rows that steps at unknown times may cost.
 _STEP, _LATE, _MOST = 0.02, 1.6, 0.5
+#: Standard deviation of the bell that takes the noise off the readings, for how fast they move.
+_SMOOTH_S = 0.15
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,6 +35,7 @@ class Trial:
     `fresh`: how fresh each row's reading is, where readings are seen to be held.
     `remembers`: the stem stood off where the pressure has it, and did not go there (see `twin/simulate.py`).
     `place`: among the recordings of the case.
+    `stem` on the fine grid is where the readings have it, for converters that it takes air from; None without pressure.
     """
 
     recording: Recording
@@ -47,6 +51,7 @@ class Trial:
     fresh: Freshness | None = None
     remembers: bool = False
     place: Place = ALONE
+    stem: FloatArray | None = None
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""
@@ -80,8 +85,22 @@ def make_trial(
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
+    stem = None if recording.pressure is None else _stem_as_read(recording, grid, use_y)
     use_y &= ~early
-    return Trial(recording, grid, float(pressure), position, start_play, use_p, use_y, false, vague, fresh=fresh)
+    return Trial(
+        recording, grid, float(pressure), position, start_play, use_p, use_y, false, vague, fresh=fresh, stem=stem
+    )
+
+
+def _stem_as_read(recording: Recording, grid: TimeGrid, use: npt.NDArray[np.bool_]) -> FloatArray | None:
+    """The readings on the fine grid with most of their noise off: what counts is how fast the stem moves."""
+    rows = np.flatnonzero(use)
+    if rows.size < 2:
+        return None
+    read = np.interp(np.arange(recording.n), rows, recording.position[rows])
+    smooth = gaussian_filter1d(read, max(_SMOOTH_S / recording.period_s, 1.0), mode="nearest")
+    fine: FloatArray = np.interp(np.arange(grid.n_fine), grid.offsets, smooth)
+    return fine
 
 
 def after_unseen_steps(recording: Recording) -> npt.NDArray[np.bool_]:

@@ -9,12 +9,15 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.booster import booster_pass
 from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
     EP_DEAD_S,
     EP_DRAW,
+    EP_FULL_DOWN,
+    EP_FULL_UP,
     EP_GAIN,
     EP_RATE_DOWN,
     EP_RATE_UP,
@@ -31,11 +34,18 @@ _SAME = 1e-9
 
 
 def ep_kernel(
-    time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float, out: FloatArray
+    time_s: FloatArray,
+    command: FloatArray,
+    offsets: np.ndarray,
+    c: FloatArray,
+    p0: float,
+    stem: FloatArray | None,
+    out: FloatArray,
 ) -> None:
     """Fills `out` (shape (offsets[-1] + 1,)) with the pressure; `offsets[i]` is the fine index of row i.
 
     Without a delay the goal is constant within a row and has shape (n,), with one it has the shape of `out`.
+    `stem`: where it is, of the shape of `out`, for a converter that it takes air from; None: it stands still, open.
     """
     goal = np.ascontiguousarray(command, dtype=np.float64)
     if c[EP_DEAD_S] > 0.0:
@@ -46,11 +56,20 @@ def ep_kernel(
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
         goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+    if boosted(c):
+        where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
+        booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
+        return
     bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
     if bounded:
         _follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
     else:
         _follow(time_s, offsets, goal, c, p0, out)
+
+
+def boosted(c: FloatArray) -> bool:
+    """Whether the pilot is followed by a booster of limited flow."""
+    return bool(min(c[EP_FULL_UP], c[EP_FULL_DOWN]) < FOREVER)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -7,8 +7,12 @@ from collections import deque
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command
+from twin.kernels.booster import booster_pass
+from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, boosted
 from twin.slots import (
+    EP_AIR,
+    EP_AMBIENT,
+    EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
@@ -34,17 +38,32 @@ class Converter:
         bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
         self._bounded = bool(bounded)
         self._sunk = np.zeros(1)
+        self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
 
-    def advance(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
-        """Pressure on the fine points of the row, shape (steps + 1,); `command` was in force over the row."""
+    def advance(self, time_s: FloatArray, offsets: np.ndarray, command: float, stem: FloatArray) -> FloatArray:
+        """Pressure on the fine points of the row, shape (steps + 1,); `command` was in force over the row.
+
+        `stem`: where it is at these points, or of size 1.
+        """
         goal = self._goal(time_s, offsets, command)
         out = np.empty(int(offsets[1]) + 1)
-        if self._bounded:
+        if self._booster is not None:
+            booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
+        elif self._bounded:
             _follow_bounded(time_s, offsets, goal, self._c, self.pressure, self._sunk, out)
         else:
             _follow(time_s, offsets, goal, self._c, self.pressure, out)
         self.pressure = float(out[-1])
         return out
+
+    def swept(self, further: float, stem: float) -> float:
+        """The pressure now that the stem is at `stem`, `further` than it was said to go in the last row."""
+        if self._booster is not None:
+            absolute = self.pressure - self._c[EP_AMBIENT] + self._c[EP_ATMOSPHERE]
+            room = 1.0 + self._c[EP_AIR] * max(stem, 0.0)
+            self._booster[0] -= self._c[EP_AIR] * absolute * further / room
+            self.pressure = float(self._booster[0])
+        return self.pressure
 
     def _goal(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
         c = self._c

@@ -10,9 +10,8 @@ import math
 
 import numpy as np
 
-from twin.live.converter import Converter
+from twin.chain import Chain
 from twin.live.sensor import Sensor
-from twin.live.valve import Valve
 from twin.plant import Plant, core_at, stem_at
 from twin.simulate import Start, step_for
 from twin.slots import S_SEEN, V_REMEMBERS, stem_stops
@@ -34,8 +33,7 @@ class LiveTwin:
         self._as_seen = bool(c.sensor[S_SEEN])
         self._step_s = step_s or step_for(plant.design)
         self._time_s = time_s
-        self._converter = Converter(c.ep, time_s, command, start.pressure)
-        self._valve = Valve(c, time_s, start.position, start.play)
+        self._chain = Chain(c, time_s, command, start.pressure, (start.position, start.play))
         low, high = stem_stops(c.valve)
         self._sensor = Sensor(c.sensor, time_s, min(max(start.position, low), high), start.core)
         self.pressure = start.pressure
@@ -62,9 +60,8 @@ class LiveTwin:
             return self.pressure, self.position
         ends = np.array([self._time_s, time_s])
         steps = min(max(math.ceil((time_s - self._time_s) / self._step_s - 1e-9), 1), _MOST_STEPS)
+        pressure, stem = self._chain.advance(ends, steps, command)
         offsets = np.array([0, steps], dtype=np.int64)
-        pressure = self._converter.advance(ends, offsets, command)
-        stem = self._valve.advance(ends, offsets, pressure)
         position = self._sensor.advance(ends, offsets, stem)
         self.position = position if fresh or not self._as_seen else self.position
         self.pressure = float(pressure[-1])

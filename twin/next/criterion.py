@@ -13,10 +13,11 @@ import numpy as np
 
 from control.experiment import Experiment
 from logs.recording import FloatArray
+from twin.chain import chain_response
 from twin.fit.fitting import Fit
 from twin.fit.least_squares import minimise
 from twin.next.rivals import Rival
-from twin.plant import Plant, pressure_response, reading_response, stem_response
+from twin.plant import Plant, reading_response
 from twin.timegrid import TimeGrid, make_grid
 
 #: Rows of an experiment while designs are compared: the difference of two explanations is slow.
@@ -54,10 +55,8 @@ def lay_out(experiment: Experiment, pressure_scale: float, rows_s: float = _ROWS
 def predict(plant: Plant, bed: Bed, channel: str) -> FloatArray:
     """Pressure or reading at the rows of the bed, from a valve that is open and at rest."""
     c = plant.coefficients(bed.duration_s)
-    pressure = pressure_response(c, bed.grid, bed.command, float(bed.command[0]))
-    if channel == "pressure":
-        return pressure[bed.grid.offsets]
-    return reading_response(c, bed.grid, stem_response(c, bed.grid, pressure, 0.0, 0.0))
+    pressure, stem = chain_response(c, bed.grid, bed.command, float(bed.command[0]), 0.0, 0.0)
+    return pressure[bed.grid.offsets] if channel == "pressure" else reading_response(c, bed.grid, stem)
 
 
 @dataclass(frozen=True, slots=True)

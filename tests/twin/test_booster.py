@@ -1,0 +1,142 @@
+"""A booster of limited flow into a chamber that the stem changes: against plain small steps, and against its limits."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from logs.units import atmosphere
+from twin.catalog import effect
+from twin.chain import chain_response
+from twin.fit.channel import predict_pressure
+from twin.fit.trial import make_trial
+from twin.kernels.booster import outflow
+from twin.live.twin import LiveTwin
+from twin.plant import Inserted, Plant, pressure_response
+from twin.simulate import Start, simulate_recording
+from twin.timegrid import make_grid
+
+D = DesignModel()
+TIME_S = np.arange(0.0, 80.05, 0.1)
+#: Steps far and near, up and down, a ramp, and one down to no pressure.
+COMMAND = np.select(
+    [TIME_S <= 5, TIME_S <= 20, TIME_S <= 30, TIME_S <= 32, TIME_S <= 60, TIME_S <= 70],
+    [6.0, 14.0, 9.0, 9.05, 9.05 - 0.1 * (TIME_S - 32.0), 13.0],
+    0.0,
+)
+#: A stem that closes and opens again while the command stands still, too.
+STEM = np.interp(TIME_S, [0, 6, 12, 22, 40, 45, 80], [0.0, 0.0, 0.5, 0.1, 0.1, 0.4, 0.0])
+WIDE = 0.034 * D.travel / D.compliance
+
+
+def plant(up_s: float, down_s: float, air: float) -> Plant:
+    """The thesis's valve behind such a converter."""
+    return Plant(D, (Inserted("ep_rate_limit", effect("ep_rate_limit").form("orifices"), (up_s, down_s, air)),))
+
+
+def pressure(one: Plant, stem: FloatArray | None = STEM, step_s: float = 0.02) -> FloatArray:
+    """At the rows."""
+    grid = make_grid(TIME_S, step_s)
+    fine = None if stem is None else np.interp(grid.fine_time_s, TIME_S, stem)
+    return pressure_response(one.coefficients(80.0), grid, COMMAND, 6.0, fine)[grid.offsets]
+
+
+def stepped(up_s: float, down_s: float, air: float, per: int = 300) -> FloatArray:
+    """The same by explicit steps of a third of a millisecond, from the balance of air."""
+    p, v, rows, ambient = 6.0, 6.0, [6.0], 14.696
+    for i, ((x0, x1), u) in enumerate(zip(pairwise(STEM), COMMAND[1:], strict=True)):
+        h = (TIME_S[i + 1] - TIME_S[i]) / per
+        speed = (x1 - x0) / (TIME_S[i + 1] - TIME_S[i])
+        for k in range(per):
+            v += h * (u - v) / D.ep_tau_s
+            opening = min(max((v - p) / WIDE, -1.0), 1.0)
+            flow = opening / up_s if opening > 0 else opening / down_s * _out(p) / _out(D.offset)
+            x = x0 + (k + 0.5) * h * speed
+            p += h * (flow - air / D.travel * (p + ambient) * speed) / (1.0 + air / D.travel * x)
+        rows.append(p)
+    return np.array(rows)
+
+
+def _out(p: float) -> float:
+    """ISO 6358-1 with a critical ratio of a half: elliptic below it."""
+    ratio = 14.696 / (p + 14.696)
+    return (p + 14.696) * np.sqrt(1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2) if p > 0 else 0.0
+
+
+@pytest.mark.parametrize("values", [(0.3, 0.5, 0.0), (0.1, 0.15, 1.5), (1.0, 0.6, 3.0)])
+def test_like_the_balance_of_air_in_small_steps(values: tuple[float, float, float]) -> None:
+    assert np.max(np.abs(pressure(plant(*values)) - stepped(*values))) < 0.01
+
+
+def test_with_all_the_flow_there_is_it_is_the_pilot() -> None:
+    assert np.max(np.abs(pressure(plant(1e-4, 1e-4, 2.0)) - pressure(Plant(D)))) < 0.01
+
+
+def test_a_stem_that_closes_takes_air() -> None:
+    """The pressure sags while it moves and the command stands, the more the less can flow."""
+    alone, taken = pressure(plant(0.3, 0.3, 1.5), None), pressure(plant(0.3, 0.3, 1.5))
+    moving = (TIME_S > 41.0) & (TIME_S < 45.0)
+    assert np.max((taken - alone)[moving]) < -0.03
+    freer = (pressure(plant(0.1, 0.1, 1.5)) - pressure(plant(0.1, 0.1, 1.5), None))[moving]
+    assert np.mean(freer) > 0.6 * np.mean((taken - alone)[moving])
+
+
+def test_coarse_steps_give_the_same_pressure() -> None:
+    fine, coarse = (pressure(plant(0.1, 0.2, 1.5), step_s=step_s) for step_s in (0.002, 0.02))
+    assert np.max(np.abs(fine - coarse)) < 0.02
+
+
+def test_air_leaves_through_an_opening_as_the_standard_says() -> None:
+    """Choked up to half of the pressure: in proportion to the absolute pressure; none without a difference."""
+    assert outflow(20.0, 14.7) == pytest.approx(34.7)
+    assert outflow(0.0, 14.7) == outflow(-1.0, 14.7) == 0.0
+    assert outflow(5.0, 14.7) == pytest.approx(19.7 * np.sqrt(1.0 - ((14.7 / 19.7 - 0.5) / 0.5) ** 2))
+
+
+def test_the_atmosphere_in_units() -> None:
+    assert atmosphere("psi") == (14.696, 0.0)
+    assert atmosphere("kPa")[0] == pytest.approx(101.325, abs=0.01)
+    absolute, reading = atmosphere("percent")
+    assert 3.0 + 0.12 * reading == 0.0 and 0.12 * absolute == pytest.approx(14.696)
+
+
+def test_converter_and_stem_agree() -> None:
+    """What the stem does to the pressure, and the pressure to the stem, is one answer, whatever the rows."""
+    one, grid = plant(0.3, 0.4, 1.5), make_grid(TIME_S, 0.02)
+    c = one.coefficients(80.0)
+    p, x = chain_response(c, grid, COMMAND, 6.0, 0.0, 0.0)
+    assert np.max(np.abs(pressure_response(c, grid, COMMAND, 6.0, x) - p)) < 0.02
+    assert np.max(np.abs(pressure_response(c, grid, COMMAND, 6.0) - p)) > 0.5
+    rows = slice(None, None, 5)
+    changes = np.searchsorted(TIME_S[rows], TIME_S)  # rows that are told apart by steps of the command only
+    often = chain_response(c, grid, COMMAND[rows][changes], 6.0, 0.0, 0.0)[1][grid.offsets][rows]
+    rare = make_grid(TIME_S[rows], 0.02)
+    seldom = chain_response(c, rare, COMMAND[rows], 6.0, 0.0, 0.0)[1][rare.offsets]
+    assert np.max(np.abs(often - seldom)) < 0.0005
+
+
+def test_a_trial_takes_the_stem_as_it_was_read() -> None:
+    one = plant(0.3, 0.4, 1.5)
+    blank = Recording("r", TIME_S, COMMAND, np.zeros(TIME_S.size), None)
+    p, y = simulate_recording(one, blank, start=Start(6.0, 0.0, 0.0))
+    noisy = y + 0.0003 * np.random.default_rng(1).standard_normal(y.size)
+    trial = make_trial(Recording("r", TIME_S, COMMAND, noisy, p), 0.02)
+    missed = predict_pressure(one, trial) - p
+    assert np.sqrt(np.mean(missed**2)) < 0.01
+    assert np.ptp(predict_pressure(one, replace(trial, stem=None)) - p) > 0.1
+    assert make_trial(blank, 0.02).stem is None
+
+
+@pytest.mark.parametrize(("values", "tolerance"), [((0.3, 0.4, 1.5), 1e-9), ((0.3, 0.4, 0.05), 0.02)])
+def test_row_by_row_it_is_the_same(values: tuple[float, float, float], tolerance: float) -> None:
+    """A live model goes block by block; so does a replay where much air is taken, and nearly agrees with it if not."""
+    one, grid = plant(*values), make_grid(TIME_S, 0.02)
+    want, _ = chain_response(one.coefficients(80.0), grid, COMMAND, 6.0, 0.0, 0.0)
+    live = LiveTwin(one, 0.0, COMMAND[0], Start(6.0, 0.0, 0.0), 80.0, 0.02)
+    got = [6.0, *(live.step(t, u)[0] for t, u in zip(TIME_S[1:], COMMAND[1:], strict=True))]
+    assert np.max(np.abs(np.array(got) - want[grid.offsets])) < tolerance

@@ -1,0 +1,132 @@
+"""A converter whose pilot is followed by a booster of limited flow, into a chamber that grows as the stem closes.
+
+Filling is choked and goes at one rate whatever the pressure; exhausting to the atmosphere slows down as the pressure
+falls; a stem that closes makes the chamber larger and takes air, which counts most where little air can flow. Close to
+the pilot's pressure the booster opens in proportion.
+Source: Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (chamber and orifices); ISO 6358-1 (flow).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from logs.recording import FloatArray
+from twin.slots import (
+    EP_AIR,
+    EP_AMBIENT,
+    EP_ATMOSPHERE,
+    EP_BAND,
+    EP_BAND_MODE,
+    EP_CLIP,
+    EP_DRAW,
+    EP_FULL_DOWN,
+    EP_FULL_UP,
+    EP_OPEN,
+    EP_REFERENCE,
+    EP_REFILL_S,
+    EP_TANK,
+    EP_TAU_FALL_S,
+    EP_TAU_RISE_S,
+    FOREVER,
+)
+
+#: Pressure ratio below which the flow is choked: of a sharp-edged orifice, and near that of valves.
+_CHOKED = 0.5
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def outflow(p: float, atmosphere: float) -> float:
+    """Flow out through an opening at gauge pressure `p`, up to a factor (ISO 6358-1)."""
+    if p <= 0.0:
+        return 0.0
+    ratio = atmosphere / (p + atmosphere)
+    if ratio <= _CHOKED:
+        return p + atmosphere
+    above = (ratio - _CHOKED) / (1.0 - _CHOKED)
+    outflow: float = (p + atmosphere) * np.sqrt(max(0.0, 1.0 - above * above))
+    return outflow
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _chamber_step(
+    p: float,
+    v: tuple[float, float],
+    h: float,
+    taken: float,
+    room: float,
+    full: tuple[float, float],
+    wide: float,
+    idle: float,
+) -> float:
+    """Pressure after `h` seconds in which the pilot goes from `v[0]` to `v[1]`.
+
+    `taken`: rate at which the stem takes pressure; `room`: the chamber's volume, 1 with the stem open; `full`: rates
+    through an opening that is full, up and down; `wide`: error at which it is; `idle`: error up to which it is shut.
+    """
+    slope, left = (v[1] - v[0]) / h, h
+    demand = slope * room + taken
+    for _ in range(5):
+        off = v[1] - slope * left - p
+        error = off - max(-idle, min(idle, off))
+        if error == 0.0 and idle > 0.0:
+            break
+        sign = 1.0 if error > 0.0 or (error == 0.0 and demand > 0.0) else -1.0
+        flow = max(full[0] if sign > 0.0 else full[1], 1e-9)
+        if abs(error) < wide:
+            # in proportion to the error, which goes to `behind`: exact for a pilot that goes on evenly
+            tau_s, behind = wide * room / flow, wide * demand / flow
+            after = behind + (error - behind) * np.exp(-left / tau_s)
+            edge = 0.0 if after * sign < 0.0 else sign * wide
+            if abs(after) < wide and edge != 0.0:
+                reached: float = v[1] - sign * idle - after
+                return reached
+            left = max(0.0, left - tau_s * np.log((error - behind) / (edge - behind)))
+            p = v[1] - slope * left - (sign * idle + 1.001 * edge)
+            continue
+        rate = (sign * flow - taken) / room
+        closing = (rate - slope) * sign
+        until = (abs(error) - 0.999 * wide) / closing if closing > 0.0 else left
+        if until >= left:
+            return p + rate * left
+        p, left = p + rate * until, left - until
+    return p - taken / room * left if idle > 0.0 else p
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def booster_pass(
+    time_s: FloatArray,
+    offsets: np.ndarray,
+    goal: FloatArray,
+    stem: FloatArray,
+    c: FloatArray,
+    state: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Fills `out` (fine) with the pressure; `goal` per row or fine, `stem` fine or of size 1, where it stands still.
+
+    `state` (3,): pressure, pilot's pressure, how far the supply has sunk; kept.
+    """
+    per_row, still = goal.size == time_s.size, stem.size == 1
+    p, v, sunk = state[0], state[1], state[2]
+    before = out[0] = p
+    base = outflow(c[EP_REFERENCE] - c[EP_AMBIENT], c[EP_ATMOSPHERE])
+    idle = c[EP_BAND] if c[EP_BAND_MODE] >= 3.0 else 0.0
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            u = min(goal[i] if per_row else goal[f], c[EP_TANK] - sunk)
+            tau_s = c[EP_TAU_RISE_S] if u > v else c[EP_TAU_FALL_S]
+            new_v = u + (v - u) * np.exp(-h / max(tau_s, 1e-12))
+            x, speed = (stem[0], 0.0) if still else (0.5 * (stem[f] + stem[f - 1]), (stem[f] - stem[f - 1]) / h)
+            # what goes by the pressure goes by that in the middle of the step
+            gauge = p + 0.5 * (p - before) - c[EP_AMBIENT]
+            taken = c[EP_AIR] * (gauge + c[EP_ATMOSPHERE]) * speed
+            full = (c[EP_FULL_UP], c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
+            new = _chamber_step(p, (v, new_v), h, taken, 1.0 + c[EP_AIR] * max(x, 0.0), full, c[EP_OPEN], idle)
+            new = min(c[EP_CLIP], new)
+            if c[EP_TANK] < FOREVER:
+                sunk = sunk * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
+            before, p, v = p, new, new_v
+            out[f] = p
+    state[0], state[1], state[2] = p, v, sunk
