@@ -13,7 +13,8 @@ from logs.recording import FloatArray, Recording
 from logs.units import atmosphere
 from twin.catalog import effect
 from twin.chain import chain_response
-from twin.fit.channel import predict_pressure
+from twin.choose.candidates import effect_causes
+from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_channel
 from twin.fit.trial import make_trial
 from twin.kernels.booster import outflow
 from twin.live.twin import LiveTwin
@@ -129,7 +130,24 @@ def test_a_trial_takes_the_stem_as_it_was_read() -> None:
     missed = predict_pressure(one, trial) - p
     assert np.sqrt(np.mean(missed**2)) < 0.01
     assert np.ptp(predict_pressure(one, replace(trial, stem=None)) - p) > 0.1
+    false = np.zeros(y.size, dtype=np.bool_)
+    false[[200, 201, 410]] = True
+    sick = make_trial(Recording("r", TIME_S, COMMAND, np.where(false, 0.9, noisy), p), 0.02, false)
+    assert sick.stem is not None and trial.stem is not None
+    assert np.max(np.abs(sick.stem - trial.stem)) < 0.01
     assert make_trial(blank, 0.02).stem is None
+
+
+def test_it_is_tried_where_the_pressure_was_measured() -> None:
+    trial = make_trial(Recording("r", TIME_S, COMMAND, STEM, COMMAND), 0.05)
+    chain = replace(trial, recording=Recording("r", TIME_S, COMMAND, STEM, None))
+
+    def forms(channel: Channel) -> set[str]:
+        causes = [c for c in effect_causes(channel) if c.name == "ep_rate_limit"]
+        return {c.form.name for c in causes if c.form is not None}
+
+    assert forms(pressure_channel([trial], 0.01)) == {"symmetric", "up_and_down", "orifices"}
+    assert forms(chain_channel([chain], 0.01)) == {"symmetric", "up_and_down"}
 
 
 @pytest.mark.parametrize(("values", "tolerance"), [((0.3, 0.4, 1.5), 1e-9), ((0.3, 0.4, 0.05), 0.02)])
