@@ -32,7 +32,7 @@ from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
 from twin.rounding import lacking_codes, rounding_down
-from twin.sensing import Sensing, noise_of_refreshed, sense
+from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
@@ -155,7 +155,9 @@ def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Cas
     progress("noise and events", 1.0)
     design = plant.design
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
-    inserted = (*plant.inserted, *rounding_down(recordings, plant, sensing))
+    reported = sensing.inserted() if sensing.band > 0.0 else ()
+    noise = as_reported(noise) if sensing.band > 0.0 else noise
+    inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))
     seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
     case = make_case(recordings, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)

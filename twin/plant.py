@@ -14,13 +14,14 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Form, Place
 from twin.kernels.ep import ep_kernel
-from twin.kernels.sensor import curvature, curved, sensor_kernel, static_reading
+from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
 from twin.refresh import Freshness
 from twin.slots import (
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     GRID,
+    S_BAND,
     S_EARLY,
     S_GAIN,
     S_SEEN,
@@ -109,12 +110,15 @@ def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: flo
 def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: Freshness | None = None) -> FloatArray:
     """Reading at the rows, shape (n,), from the stem on the fine grid.
 
-    `fresh`: how fresh each row's recorded reading is, for effects that go by it.
+    `fresh`: how fresh each row's recorded reading is, for effects that go by it; without, one that is reported on
+    change goes by its band.
     """
     out, taken_s = np.empty(grid.time_s.size), None
     if fresh is not None and c.sensor[S_SEEN] == 2.0:
         taken_s = np.maximum(fresh.taken_s - c.sensor[S_EARLY] * fresh.slack_s, 0.0)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)
+    if fresh is None and c.sensor[S_BAND] > 0.0:
+        report_on_change(out, c.sensor[S_BAND])
     return out[fresh.rows] if fresh is not None and c.sensor[S_SEEN] == 1.0 else out
 
 

@@ -34,7 +34,7 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
 
     Nothing where the reading is fine or rounds to the nearest.
     """
-    if "sensor_quantization" not in sensing.accepted:
+    if "sensor_quantization" not in sensing.accepted or sensing.band > 0.0:
         return ()
     trials = [make_trial(r, _STEP_S, bad) for r, bad in zip(recordings, sensing.bad_rows, strict=True)]
     channel = chain_channel(trials, 1.0)

@@ -33,7 +33,8 @@ EP_OPEN = 17  # error at which the booster is fully open [pressure]
 EP_AIR = 18  # by how much a unit of the stem enlarges the chamber [1/position]
 EP_ATMOSPHERE = 19  # the atmosphere's absolute pressure [pressure]
 EP_AMBIENT = 20  # what a reading is at the atmosphere's [pressure]
-EP_COUNT = 21
+EP_SLEW = 21  # highest slope of what the converter aims at [pressure/s]; FOREVER: it follows the command
+EP_COUNT = 22
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -104,7 +105,8 @@ S_LEAVES = S_LAG2_S + 1  # excess at the end of travel where the core leaves the
 S_FROM = S_LEAVES + 1  # where that begins [fraction of travel]
 S_AT_OPEN = S_LEAVES + 2  # 1: at the open end
 S_EARLY = S_AT_OPEN + 1  # how early that clock ticks, of what it leaves open [1]
-S_COUNT = S_EARLY + 1
+S_BAND = S_EARLY + 1  # by how much the reading has to change to be reported [position]
+S_COUNT = S_BAND + 1
 
 FOREVER = 1e30
 
@@ -123,7 +125,7 @@ def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
     c = np.zeros(EP_COUNT)
     c[[EP_GAIN, EP_REFILL_S]] = 1.0
-    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN]] = FOREVER
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
     return c
 
 

@@ -22,7 +22,8 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     """
     records = max((trial.place.of for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
-    refreshed = all(trial.fresh is not None for trial in channel.trials)
+    settled = base is not None and any(one.form.seen for one in base.inserted)
+    refreshed = not settled and all(trial.fresh is not None for trial in channel.trials)
     return [
         Cause(effect.name, effect, form, values)
         for effect in effects().values()

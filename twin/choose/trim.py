@@ -17,6 +17,8 @@ from twin.fit.fitting import Fit
 
 #: A cause that is, with its twins, less likely than this is not named.
 LIKELY = 0.45
+#: Mean squared residual of the design, noise = 1, up to which a signal passes for healthy: 1.3 times the noise.
+SLIGHT = 1.69
 
 
 def belief(name: str, probability: Mapping[str, float]) -> float:
@@ -49,8 +51,7 @@ def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decis
 def dropped(decision: Decision, name: str) -> Decision | None:
     """The decision without one of its causes, whatever that leaves; None where the others were never tried alone."""
     if decision.names == (name,):
-        none = decision.findings.none
-        return replace(decision, accepted=none, explained=False, gap=False, rest=decision.rest_of(none))
+        return _silent(decision)
     smaller = _without(decision, name)
     return None if smaller is None else replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
 
@@ -63,23 +64,30 @@ def _without(decision: Decision, name: str) -> Fit | None:
 
 
 def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple[Decision, ...]:
-    """The decisions without a channel's only cause where that is a guess, and something else is sure.
+    """The decisions without what is a guess, or about hardly anything, on a channel beside what is sure.
 
     `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
-    equally well; naming one of them would be wrong more often than right.
+    equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
+    percent: where a signal alone would pass for healthy, what explains the rest of it is no fault.
     """
-    guesses = [_guess(d, weights) for d in decisions]
-    sure = seen or any(d.names and not guess for d, guess in zip(decisions, guesses, strict=True))
-    kept = []
-    for decision, guess in zip(decisions, guesses, strict=True):
-        without = dropped(decision, guess) if guess and sure else None
-        kept.append(decision if without is None else without)
-    return tuple(kept)
+    unsure = [_guess(d, weights) or _slight(d) for d in decisions]
+    sure = seen or any(d.names and not doubt for d, doubt in zip(decisions, unsure, strict=True))
+    return tuple(_silent(d) if sure and doubt else d for d, doubt in zip(decisions, unsure, strict=True))
 
 
-def _guess(decision: Decision, weights: Weights) -> str:
-    """The name of a channel's only cause if it is, with its twins, less likely than not; else nothing."""
+def _silent(decision: Decision) -> Decision:
+    none = decision.findings.none
+    return replace(decision, accepted=none, explained=False, gap=False, rest=decision.rest_of(none))
+
+
+def _slight(decision: Decision) -> bool:
+    """Whether the design alone leaves little more than the noise on this channel."""
+    return bool(decision.names) and decision.findings.none.mse < SLIGHT * decision.floor
+
+
+def _guess(decision: Decision, weights: Weights) -> bool:
+    """Whether a channel's only cause is, with its twins, less likely than not."""
     if len(decision.names) != 1:
-        return ""
+        return False
     [name] = decision.names
-    return name if belief(name, weigh(decision, weights).probability) < LIKELY else ""
+    return belief(name, weigh(decision, weights).probability) < LIKELY

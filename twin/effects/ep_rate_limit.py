@@ -17,6 +17,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFERENCE,
+    EP_SLEW,
     FOREVER,
 )
 
@@ -67,6 +68,10 @@ def _two_rates(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_RATE_DOWN] = _rate(values[1])
 
 
+def _ramped(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_SLEW] = _rate(values[0])
+
+
 def _orifices(c: Coefficients, values: Sequence[float]) -> None:
     if min(values[:2]) <= 1.0 / FOREVER:
         return
@@ -82,8 +87,9 @@ EFFECT = Effect(
     name="ep_rate_limit",
     stage="ep",
     claim="The slope of the pressure is bounded by flow capacity.",
-    equations="|dp/dt| <= 1 / slowness; orifices: V dp/dt = flow - (p + p_a) dV/dt, V = 1 + air * x / travel; flow: "
-    "1 / slowness_up rising, falling with ISO 6358's outflow at p over that at the offset; in proportion near the goal",
+    equations="|dp/dt| <= 1 / slowness; ramped: the goal of the lag moves no faster than 1 / slowness; orifices: "
+    "V dp/dt = flow - (p + p_a) dV/dt, V = 1 + air * x / travel; flow: 1 / slowness_up rising, falling with ISO 6358's "
+    "outflow at p over that at the offset; in proportion near the goal",
     source="Andersen, The Analysis and Design of Pneumatic Systems (Wiley 1967); ISO 6358-1 (choked flow)",
     forms=(
         Form("symmetric", (_slowness("slowness", "least time per unit of pressure, 1 / rate limit"),), _symmetric),
@@ -95,6 +101,7 @@ EFFECT = Effect(
             ),
             _two_rates,
         ),
+        Form("ramped", (_slowness("slowness", "least time per unit of pressure of what it aims at"),), _ramped),
         Form(
             "orifices",
             (

@@ -12,11 +12,13 @@ from twin.diagnosis import Estimate
 from twin.events.delay import delay
 from twin.events.dropouts import find_dropouts
 from twin.events.evidence import Evidence, nothing
+from twin.events.on_change import on_change
 from twin.events.stale import stale_samples
 from twin.events.stickslip import stick_slip
 from twin.noise.lattice import lattice_step, missing_codes, rounding_error
 from twin.noise.model import NoiseModel
 
+ON_CHANGE = "sensor_quantization/on_change"
 _MATERIAL = 0.25  # of the floor's variance
 
 
@@ -35,7 +37,7 @@ class Events:
 
 
 def scan_events(recording: Recording, noise: NoiseModel) -> Events:
-    """Tests one recording for stale samples, drop-outs, quantization, stick-slip and dead time."""
+    """Tests one recording for stale samples, drop-outs, quantization (two kinds), stick-slip and dead time."""
     position, pressure = recording.position, recording.pressure
     sigma = noise.position.sigma
     step = lattice_step(position)
@@ -47,6 +49,7 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
         "sensor_dropouts": drop.evidence,
         "stale_samples": stale_samples(recording.time_s, clean, sigma, step),
         "sensor_quantization": quantization,
+        ON_CHANGE: on_change(clean, step, recording.position_unit),
     }
     false_pressure = np.zeros(recording.n, dtype=bool)
     if pressure is None or noise.pressure is None:

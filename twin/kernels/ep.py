@@ -22,6 +22,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
+    EP_SLEW,
     EP_SUPPLY,
     EP_TANK,
     EP_TAU_FALL_S,
@@ -56,6 +57,9 @@ def ep_kernel(
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
         goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+    if c[EP_SLEW] < FOREVER:
+        source, goal = goal, np.empty(out.size)
+        _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
     if boosted(c):
         where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
         booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
@@ -118,6 +122,26 @@ def _banded(values: FloatArray, band: float, hold: bool, start: float, out: Floa
         elif abs(u - held) > band:
             held = u
         out[i] = held
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _slewed(
+    time_s: FloatArray, goal: FloatArray, offsets: np.ndarray, slew: float, start: float, out: FloatArray
+) -> float:
+    """Fills `out` (fine) with a goal, per row or fine, that moves no faster than `slew`: its mean over each fine step.
+
+    Returns where it stands at the end.
+    """
+    per_row, held = goal.size == time_s.size, start
+    out[0] = held
+    for i in range(1, time_s.size):
+        step = slew * max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            before, wanted = held, goal[i] if per_row else goal[f]
+            held = max(held - step, min(held + step, wanted))
+            on_way = abs(held - before) / step  # share of the step that it moves
+            out[f] = held - 0.5 * on_way * (held - before)
+    return held
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -108,6 +108,14 @@ def _wandering(t: FloatArray, c: FloatArray) -> FloatArray:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def report_on_change(readings: FloatArray, band: float) -> None:
+    """Holds the readings (n,), in place, until one is more than `band` away from the one held."""
+    for i in range(1, readings.size):
+        if abs(readings[i] - readings[i - 1]) <= band:
+            readings[i] = readings[i - 1]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _refresh(time_s: FloatArray, c: FloatArray, out: FloatArray) -> None:
     """Holds the reading between refreshes at phase + n * period; the value is that of the refresh instant."""
     period = c[S_HOLD_S]

@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
-from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, boosted
+from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, _slewed, boosted
 from twin.slots import (
     EP_AIR,
     EP_AMBIENT,
@@ -20,6 +20,7 @@ from twin.slots import (
     EP_GAIN,
     EP_RATE_DOWN,
     EP_RATE_UP,
+    EP_SLEW,
     EP_SUPPLY,
     EP_TANK,
     EP_ZERO,
@@ -37,6 +38,7 @@ class Converter:
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
         bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
         self._bounded = bool(bounded)
+        self._aim = p0
         self._sunk = np.zeros(1)
         self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
 
@@ -74,8 +76,11 @@ class Converter:
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
             self._held = float(goal[-1])
-        bounded: FloatArray = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
-        return bounded
+        goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+        if c[EP_SLEW] < FOREVER:
+            source, goal = goal, np.empty(int(offsets[1]) + 1)
+            self._aim = _slewed(time_s, source, offsets, float(c[EP_SLEW]), self._aim, goal)
+        return goal
 
     def _delayed(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
         """The commands of a dead time ago, mean over each fine step; forgets what no step can need again."""

@@ -14,7 +14,7 @@ from twin.chain import Chain
 from twin.live.sensor import Sensor
 from twin.plant import Plant, core_at, stem_at
 from twin.simulate import Start, step_for
-from twin.slots import S_SEEN, V_REMEMBERS, stem_stops
+from twin.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
 
 _MOST_STEPS = 10_000
 
@@ -30,7 +30,7 @@ class LiveTwin:
     ) -> None:
         c = plant.coefficients(duration_s)
         c.valve[V_REMEMBERS] = start.remembers
-        self._as_seen = bool(c.sensor[S_SEEN])
+        self._as_seen, self._band = bool(c.sensor[S_SEEN]), float(c.sensor[S_BAND]) or -1.0
         self._step_s = step_s or step_for(plant.design)
         self._time_s = time_s
         self._chain = Chain(c, time_s, command, start.pressure, (start.position, start.play))
@@ -49,10 +49,11 @@ class LiveTwin:
         known = command if pressure is None or not math.isfinite(pressure) else pressure
         return cls(plant, time_s, command, Start(known, stem, stem, core_at(c, reading)), duration_s)
 
-    def step(self, time_s: float, command: float, fresh: bool = True) -> tuple[float, float]:
+    def step(self, time_s: float, command: float, fresh: bool | None = None) -> tuple[float, float]:
         """Pressure and reading predicted at `time_s`; `command` was in force since the row before.
 
-        A model whose readings are held as they are seen to be keeps its own while the valve's is not `fresh`.
+        A model whose readings are held as they are seen to be keeps its own while the valve's is not `fresh`;
+        where nobody knows (None) one that is reported on change goes by its band.
 
         A row that is not later than the one before changes nothing.
         """
@@ -63,6 +64,8 @@ class LiveTwin:
         pressure, stem = self._chain.advance(ends, steps, command)
         offsets = np.array([0, steps], dtype=np.int64)
         position = self._sensor.advance(ends, offsets, stem)
+        if fresh is None:
+            fresh = not abs(position - self.position) <= self._band
         self.position = position if fresh or not self._as_seen else self.position
         self.pressure = float(pressure[-1])
         self._time_s = time_s

@@ -1,0 +1,102 @@
+"""Readings that are reported only when they have changed enough: told from slow and from coarse ones, and replayed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from tests.twin.judged import a_record
+from twin.catalog import effect
+from twin.choose.search import SearchRules
+from twin.diagnose import Outcome, Settings, diagnose
+from twin.events.on_change import on_change
+from twin.kernels.sensor import report_on_change
+from twin.live.twin import LiveTwin
+from twin.plant import Inserted, Plant
+from twin.simulate import Start, simulate_recording
+
+DESIGN = DesignModel()
+BAND_IN = 0.02
+REPORTED = Inserted("sensor_quantization", effect("sensor_quantization").form("on_change"), (BAND_IN,))
+LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.8,))
+
+
+def reported(record: Recording, band: float = BAND_IN) -> Recording:
+    held = record.position.copy()
+    report_on_change(held, band)
+    return replace(record, position=held)
+
+
+def answered(record: Recording) -> Outcome:
+    return diagnose([record], DESIGN, settings=Settings(search=SearchRules(most=1)))
+
+
+def walk(seed: int, size: int = 4000) -> FloatArray:
+    """A reading that creeps and turns, with noise."""
+    dice = np.random.default_rng(seed)
+    return np.asarray(0.1 * np.sin(np.arange(size) / 50.0) + 0.001 * dice.normal(size=size))
+
+
+@settings(max_examples=25)
+@given(st.floats(0.003, 0.02), st.integers(0, 100))
+def test_the_band_is_found(band: float, seed: int) -> None:
+    y = walk(seed)
+    report_on_change(y, band)
+    evidence = on_change(y, None, "in")
+    assert evidence.found
+    assert band <= evidence.estimates["band"].value < 1.05 * band
+
+
+@settings(max_examples=25)
+@given(st.integers(0, 100), st.integers(2, 12))
+def test_slow_coarse_and_noisy_readings_are_none(seed: int, every: int) -> None:
+    y = walk(seed)
+    assert not on_change(y, None, "in").found
+    assert not on_change(np.repeat(y[::every], every), None, "in").found
+    assert not on_change(0.01 * np.round(y / 0.01), 0.01, "in").found
+
+
+def test_what_it_needs() -> None:
+    steps = np.repeat([0.0, 1.0], 50)
+    assert "fewer than 30 changes" in on_change(steps, None, "in").note
+    far = np.cumsum(np.concatenate([[0.1], np.geomspace(1.0, 1e6, 60)]))
+    assert "far larger" in on_change(far, None, "in").note
+
+
+def test_it_holds_until_it_has_changed_enough() -> None:
+    y = np.array([0.0, 0.5, 1.0, 1.01, 1.5, 0.0, -1.2])
+    report_on_change(y, 1.0)
+    assert y.tolist() == [0.0, 0.0, 0.0, 1.01, 1.01, 0.0, -1.2]
+
+
+def test_a_healthy_valve_that_is_reported_on_change_has_this_and_nothing_else() -> None:
+    found = answered(reported(a_record(Plant(DESIGN), twice=True))).diagnosis
+    assert [(c.name, c.form) for c in found.causes] == [("sensor_quantization", "on_change")]
+    assert (
+        found.causes[0].parameters["step"].value == BAND_IN
+        or abs(found.causes[0].parameters["step"].value / BAND_IN - 1.0) < 0.05
+    )
+
+
+def test_what_else_is_wrong_shows_beside_it() -> None:
+    found = answered(reported(a_record(Plant(DESIGN, (LATE,)), twice=True))).diagnosis
+    names = {c.name for c in found.causes}
+    assert "sensor_quantization" in names and names & {"additional_lag", "sensor_lag"} and len(names) == 2
+
+
+def test_the_model_reports_as_the_valve_did_or_by_its_band() -> None:
+    plant = Plant(DESIGN, (REPORTED,))
+    record = reported(a_record(Plant(DESIGN)))
+    seen = simulate_recording(plant, record)[1]
+    assert np.array_equal(np.diff(seen) == 0.0, np.diff(record.position) == 0.0)
+    live = LiveTwin(plant, 0.0, 12.0, Start(12.0, 0.0, 0.0), 60.0)
+    own = np.array([live.step(0.1 * k, 12.0)[1] for k in range(1, 100)])
+    moved = np.abs(np.diff(own))
+    assert np.min(moved[moved > 0.0]) > BAND_IN and np.mean(moved == 0.0) > 0.3
+    told = LiveTwin(plant, 0.0, 12.0, Start(12.0, 0.0, 0.0), 60.0)
+    assert np.ptp([told.step(0.1 * k, 12.0, fresh=False)[1] for k in range(1, 100)]) == 0.0
