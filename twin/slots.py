@@ -76,7 +76,8 @@ V_SHORT = 35  # how far friction holds the stem from its target at no speed; fal
 V_REMEMBERS = 36  # 1: what the slow tails have of what was before holds the stem off its target at the start
 V_PRESLIDING = 37  # distance after which all of the friction in the force balance has turned [position]
 V_INERTIA_S = 38  # time constant with which the speed of the stem follows what pulls it [s]
-V_COUNT = 39
+V_ROUNDED = 39  # speed at which friction in the force balance has turned, as tanh(v / it) [position/s]; 0: at once
+V_COUNT = 40
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -16,6 +16,7 @@ from twin.slots import (
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
     V_PRESLIDING,
+    V_ROUNDED,
 )
 
 _SHARE = Parameter(
@@ -37,6 +38,18 @@ _PRESLIDING = Parameter(
     starts=(0.003, 0.02),
     scale=0.04,
     doc="distance after a reversal over which all of the friction has turned",
+    size=False,
+)
+
+
+_SPEED = Parameter(
+    name="speed",
+    kind="position_rate",
+    lower=0.0,
+    upper=0.2,
+    starts=(0.0015, 0.01),
+    scale=0.02,
+    doc="speed at which most of the friction has turned",
     size=False,
 )
 
@@ -66,6 +79,12 @@ def _partial(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_OUTER] = 0.5 * d.deadband * (1.0 - values[0])
     c.valve[V_OUTER_CENTRE] = d.offset
     c.valve[V_OUTER_SLOPE] = 1.0 / d.compliance
+
+
+def _rounded(c: Coefficients, values: Sequence[float]) -> None:
+    _partial(c, values)
+    if values[0] > 0.0:
+        c.valve[V_ROUNDED] = values[1]
 
 
 def _met_at_speed(c: Coefficients) -> None:
@@ -99,13 +118,16 @@ EFFECT = Effect(
     name="friction_in_motion",
     stage="actuator",
     claim="The stem stops when the pressure reverses instead of coasting to its play target.",
-    equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a pressure play of (1 - share) (a1 - a2) comes "
-    "before; elastic: friction turns over a distance, w is held only beyond the stops, x at the stops",
-    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799",
+    equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a play of (1 - share) (a1 - a2) comes before; "
+    "rounded: tau v + share k (a1 - a2) / 2 tanh(v / speed) = k (p - (a1 + a2) / 2) - x behind that play; elastic: "
+    "friction turns over a distance, w is held only beyond the stops, x at the stops",
+    source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
+    "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007) 580 (rounded)",
     forms=(
         Form("full", (), _full),
         Form("partial", (_SHARE,), _partial),
         Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic, described=True),
+        Form("rounded", (_SHARE, _SPEED), _rounded),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),
     ),

@@ -17,6 +17,7 @@ from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
 from twin.slots import (
     V_BREAKAWAY,
@@ -41,6 +42,7 @@ from twin.slots import (
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_REMEMBERS,
+    V_ROUNDED,
     V_SHORT,
     V_STEP,
     V_STEP_TIME_S,
@@ -104,8 +106,10 @@ def coupled_coefficients(c: FloatArray) -> FloatArray:
 def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]], Callable[..., None]]:
     """Start and steps of the loop for target and stem that act on each other.
 
-    Friction that turns over a distance has one of its own, except beside what only the other one knows.
+    Friction that turns over a distance, or with the speed, has one of its own, except beside what only the other knows.
     """
+    if c[V_ROUNDED] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any():
+        return rounded_start, rounded_steps
     elastic = c[V_PRESLIDING] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any()
     return (elastic_start, elastic_steps) if elastic else (coupled_start, coupled_steps)
 
