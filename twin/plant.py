@@ -24,6 +24,7 @@ from twin.slots import (
     S_BAND,
     S_EARLY,
     S_GAIN,
+    S_LATE_S,
     S_SEEN,
     S_TRAVEL,
     S_ZERO,
@@ -115,7 +116,8 @@ def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: F
     """
     out, taken_s = np.empty(grid.time_s.size), None
     if fresh is not None and c.sensor[S_SEEN] == 2.0:
-        taken_s = np.maximum(fresh.taken_s - c.sensor[S_EARLY] * fresh.slack_s, 0.0)
+        early_s = c.sensor[S_EARLY] * fresh.slack_s + c.sensor[S_LATE_S]
+        taken_s = np.maximum(fresh.taken_s - early_s, 0.0)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)
     if fresh is None and c.sensor[S_BAND] > 0.0:
         report_on_change(out, c.sensor[S_BAND])

@@ -70,7 +70,8 @@ def simulate_recording(
     c = plant.coefficients(recording.duration_s)
     c.sensor[S_CORE], c.valve[V_REMEMBERS] = first.core, first.remembers
     pressure, stem = chain_response(c, grid, recording.command, first.pressure, first.position, first.play)
-    fresh = freshness(recording) if c.sensor[S_SEEN] else None
+    # a blank that is to be filled says nothing of when its readings are new
+    fresh = freshness(recording) if c.sensor[S_SEEN] and np.diff(recording.position).any() else None
     return pressure[grid.offsets], reading_response(c, grid, stem, fresh)
 
 

@@ -107,7 +107,9 @@ S_FROM = S_LEAVES + 1  # where that begins [fraction of travel]
 S_AT_OPEN = S_LEAVES + 2  # 1: at the open end
 S_EARLY = S_AT_OPEN + 1  # how early that clock ticks, of what it leaves open [1]
 S_BAND = S_EARLY + 1  # by how much the reading has to change to be reported [position]
-S_COUNT = S_BAND + 1
+S_LATE_S = S_BAND + 1  # how long a reading waits behind the clock that shows in it [s]
+S_OTHER = S_LATE_S + 1  # excess at the open end of a core that leaves its range at both [fraction of travel]
+S_COUNT = S_OTHER + 1
 
 FOREVER = 1e30
 

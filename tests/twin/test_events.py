@@ -120,6 +120,16 @@ def test_tips_of_motion_are_no_false_readings() -> None:
     assert not find_dropouts(moving.pressure, 0.02).rows.any()
 
 
+@pytest.mark.parametrize("step", [0.0, 3.0, 10.0])
+def test_false_readings_in_a_motion_are_found(step: float) -> None:
+    """Steps of several sigmas from reading to reading: the neighbours of a false one are where they should be."""
+    ramp = step * SIGMA * np.arange(200.0)
+    position = ramp + SIGMA * np.random.default_rng(2).standard_normal(ramp.size)
+    rows = [30, 31, 90, 150]
+    position[rows] += 100.0 * SIGMA * np.array([1.0, 1.0, -1.0, 1.0])
+    assert np.flatnonzero(find_dropouts(position, SIGMA).rows).tolist() == rows
+
+
 def test_a_jump_that_stays_is_no_dropout() -> None:
     position = np.where(np.arange(500) < 250, 0.1, 0.3) + SIGMA * np.random.default_rng(0).standard_normal(500)
     assert not find_dropouts(position, SIGMA).rows.any()

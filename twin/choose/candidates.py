@@ -7,6 +7,7 @@ from twin.effect import Effect, Form
 from twin.fit.channel import Channel
 from twin.fit.space import Cause
 from twin.plant import Plant
+from twin.slots import S_SEEN
 
 
 def number_causes(channel: Channel) -> list[Cause]:
@@ -22,7 +23,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     """
     records = max((trial.place.of for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
-    settled = base is not None and any(one.form.seen for one in base.inserted)
+    settled = base is not None and bool(base.coefficients(0.0).sensor[S_SEEN])
     refreshed = not settled and all(trial.fresh is not None for trial in channel.trials)
     return [
         Cause(effect.name, effect, form, values)

@@ -45,6 +45,18 @@ _PRESLIDING = Parameter(
     doc="distance after a reversal over which all of the friction has turned",
 )
 
+_SHARE = Parameter(
+    name="share",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=(0.2, 0.6),
+    scale=0.3,
+    doc="share of the motion that belongs to the narrower play",
+    neutral=0.5,
+    size=False,
+)
+
 _QUANTILES = (np.arange(PLAYS) + 0.5) / PLAYS
 
 
@@ -65,6 +77,12 @@ def _partly_soft(c: Coefficients, values: Sequence[float]) -> None:
     narrow = -half * (np.arange(PLAYS - 1) + 0.5) / (PLAYS - 1)
     wide = 0.5 * half * values[0] / (1.0 - values[0])
     _set(c, np.append(narrow, wide), soft)
+
+
+def _two(c: Coefficients, values: Sequence[float]) -> None:
+    share, apart = values
+    narrow = -min(apart, 0.5 * c.design.deadband) * (1.0 - share)
+    _set(c, np.array([narrow, -narrow * share / (1.0 - share)]), np.array([share, 1.0 - share]))
 
 
 def _turns(c: Coefficients, values: Sequence[float]) -> None:
@@ -98,6 +116,7 @@ EFFECT = Effect(
         Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
         Form("partly_soft", (_SOFT,), _partly_soft),
         Form("turns_over_a_distance", (_PRESLIDING,), _turns),
+        Form("two_plays", (_SHARE, *_spread("by how much the half widths of the two plays differ")), _two),
         Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
     ),
     twins=("stiction", "creep"),

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_AT_OPEN, S_BOW, S_FROM, S_GAIN, S_LEAVES, S_SWING, S_TRAVEL, S_ZERO
+from twin.slots import S_AT_OPEN, S_BOW, S_FROM, S_GAIN, S_LEAVES, S_OTHER, S_SWING, S_TRAVEL, S_ZERO
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -98,12 +99,25 @@ def _leaving(end: str) -> tuple[Parameter, Parameter]:
     return _bend(end), begins
 
 
+def _other_bend() -> Parameter:
+    return replace(_bend("open"), name="other_bend")
+
+
+def _middle() -> Parameter:
+    doc = "share of the travel, in its middle, within which the reading is straight"
+    return replace(_leaving("either")[1], starts=(0.4, 0.7), doc=doc)
+
+
 def _leaves_closed(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_LEAVES, S_FROM]] = values
 
 
 def _leaves_open(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_LEAVES, S_FROM, S_AT_OPEN]] = values[0], 1.0 - values[1], 1.0
+
+
+def _leaves_both(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_LEAVES, S_OTHER, S_FROM]] = values[0], values[1], 0.5 + 0.5 * values[2]
 
 
 EFFECT = Effect(
@@ -124,6 +138,7 @@ EFFECT = Effect(
         Form("cubic", (_bend("closed"), _LINE), _cubic),
         Form("leaves_range_closed", _leaving("closed"), _leaves_closed),
         Form("leaves_range_open", _leaving("open"), _leaves_open),
+        Form("leaves_range_both", (_bend("closed"), _other_bend(), _middle()), _leaves_both),
     ),
     twins=("nonlinear_spring", "flow_force"),
     absorbs=("compliance", "offset"),

@@ -37,7 +37,7 @@ EFFECT = Effect(
     source="Widrow, Kollar, Quantization Noise (Cambridge 2008); Miskowicz, Sensors 6 (2006) 49 (on change)",
     forms=(
         Form("uniform_steps", (_step("step", "distance of neighbouring readings"),), _apply),
-        Form("on_change", (_step("step", "by how much it has to change to be reported"),), _on_change, seen=True),
+        Form("on_change", (_step("step", "by how much it has to change to be reported"),), _on_change),
     ),
     evidence="events",
 )

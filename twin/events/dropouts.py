@@ -51,7 +51,10 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     apart = y - median_filter(y, _WINDOW, mode="mirror")
     sigma = max(noise_sigma, 1e-12)
     bound = SIGMAS * sigma
-    false = _isolated(y, np.abs(apart) > bound, bound)
+    steps = np.abs(np.diff(y, prepend=y[:1]))
+    # false readings in a motion move the median of their neighbours by a step or two, which are not far for that
+    far = np.abs(apart) > bound + 2.0 * median_filter(steps, 2 * _WINDOW + 1, mode="mirror")
+    false = _isolated(y, far, bound)
     rows[known] = false
     count = int(false.sum())
     if count == 0:

@@ -31,6 +31,7 @@ from twin.slots import (
     S_LAG2_S,
     S_LAG_S,
     S_LEAVES,
+    S_OTHER,
     S_PLAY,
     S_STEP,
     S_SWING,
@@ -87,7 +88,7 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
 
 def curved(c: FloatArray) -> bool:
     """Whether the reading is anything but proportional to the position."""
-    return bool(c[S_BOW] != 0.0 or c[S_SWING] != 0.0 or c[S_LEAVES] != 0.0)
+    return bool(c[S_BOW] != 0.0 or c[S_SWING] != 0.0 or c[S_LEAVES] != 0.0 or c[S_OTHER] != 0.0)
 
 
 def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
@@ -97,6 +98,8 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
     if c[S_LEAVES] != 0.0:
         way, reach = (c[S_FROM] - xi, c[S_FROM]) if c[S_AT_OPEN] != 0.0 else (xi - c[S_FROM], 1.0 - c[S_FROM])
         bend = bend + c[S_LEAVES] * np.square(np.maximum(way, 0.0) / reach)
+    if c[S_OTHER] != 0.0:
+        bend = bend + c[S_OTHER] * np.square(np.maximum(1.0 - c[S_FROM] - xi, 0.0) / (1.0 - c[S_FROM]))
     return np.asarray(c[S_TRAVEL] * bend)
 
 
