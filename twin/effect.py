@@ -111,7 +111,7 @@ class Place:
 
     Where they share a clock: since when the first of them had begun, and how long they last in all, with what lies
     between them; 0 where each has a clock of its own. A part of a recording begins `within_s` after it, and the whole
-    lasts `whole_s` (0: it is the whole).
+    lasts `whole_s` (0: it is the whole). Where each has a clock of its own, those given before it last `before_s`.
     """
 
     number: int = 0
@@ -120,6 +120,7 @@ class Place:
     span_s: float = 0.0
     within_s: float = 0.0
     whole_s: float = 0.0
+    before_s: float = 0.0
 
 
 ALONE = Place()

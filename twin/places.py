@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
+from itertools import accumulate, pairwise
 
 from logs.recording import Recording
 from twin.effect import Place
@@ -20,5 +20,6 @@ def places(recordings: Sequence[Recording]) -> list[Place]:
     whole_s = spans[-1][1] - spans[0][0] if spans else 0.0
     apart = all(before[1] <= after[0] for before, after in pairwise(spans))
     if of < 2 or not apart or sum(r.duration_s for r in recordings) < _FILLED * whole_s:
-        return [Place(k, of) for k in range(of)]
+        lasting_s = [0.0, *accumulate(r.duration_s for r in recordings)]
+        return [Place(k, of, before_s=lasting_s[k]) for k in range(of)]
     return [Place(k, of, float(r.time_s[0]) - spans[0][0], whole_s) for k, r in enumerate(recordings)]

@@ -18,6 +18,7 @@ from twin.fit.channel import predict_reading
 from twin.places import places
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording
+from twin.slots import V_DRIFT_RATE
 from twin.thin import look_at
 
 DESIGN = DesignModel()
@@ -45,7 +46,16 @@ def test_recordings_one_after_the_other_share_a_clock_in_any_order() -> None:
 @pytest.mark.parametrize("begins", [(0.0, 0.0), (0.0, 5.0), (0.0, 5000.0), (3.0,)])
 def test_recordings_with_clocks_of_their_own(begins: tuple[float, ...]) -> None:
     found = places([blank(begin_s) for begin_s in begins])
-    assert found == [Place(k, len(begins)) for k in range(len(begins))]
+    assert [replace(p, before_s=0.0) for p in found] == [Place(k, len(begins)) for k in range(len(begins))]
+    assert [p.before_s for p in found] == pytest.approx([9.9 * k for k in range(len(begins))])
+
+
+def test_friction_may_go_on_drifting_though_each_has_a_clock_of_its_own() -> None:
+    rate = Inserted("friction_drift", effect("friction_drift").form("goes_on"), (1e-3,))
+    first, second = (Plant(DESIGN, (rate,)).coefficients(100.0, p) for p in (Place(0, 2), Place(1, 2, before_s=300.0)))
+    assert np.allclose(second.close_shift - first.close_shift, 0.3)
+    assert np.allclose(first.open_shift - second.open_shift, 0.3)
+    assert first.valve[V_DRIFT_RATE] == second.valve[V_DRIFT_RATE] == 1e-3
 
 
 @pytest.mark.parametrize(("name", "form", "values"), DRIFTS)

@@ -59,9 +59,18 @@ _WHEN = Parameter(
 )
 
 
+#: Recordings up to which it goes on from one to the next.
+_MANY = 50
+
+
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_DRIFT_RATE] = values[0]
     c.widen(values[0] * c.since_s)
+
+
+def _goes_on(c: Coefficients, values: Sequence[float]) -> None:
+    _linear(c, values)
+    c.widen(values[0] * (c.place.before_s if c.place is not None else 0.0))
 
 
 def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
@@ -87,10 +96,12 @@ EFFECT = Effect(
     name="friction_drift",
     stage="actuator",
     claim="The deadband changes with time.",
-    equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step",
+    equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step; "
+    "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own",
     source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
     forms=(
         Form("linear", (_RATE,), _linear),
+        Form("goes_on", (_RATE,), _goes_on, apart=_MANY),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
