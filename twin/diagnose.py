@@ -12,6 +12,7 @@ from twin.assemble import assembled
 from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.decide import DecisionRules
+from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.choose.trim import spoken
 from twin.choose.twins import settled
@@ -34,6 +35,7 @@ from twin.refresh import refreshed_together
 from twin.rounding import lacking_codes, rounding_down
 from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
+from twin.statement import statement
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
@@ -105,7 +107,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     rules = replace(settings.rules, gain=max(settings.rules.gain, share), within=1.0 if share > 0.0 else 0.0)
     settings = replace(settings, rules=rules)
     result = judge(look, settings.search, settings.rules, progress, watch=known.searches.append)
-    sure = tuple(settled(d, settings.rules, settings.weights) for d in result.decisions)
+    sure = tuple(inside(settled(d, settings.rules, settings.weights), settings.rules) for d in result.decisions)
     result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
@@ -137,6 +139,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop, gap_by_condition=apart)
     if judgement.verdict == "unexplained":
         diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, itself.loud, itself.swing))
+        diagnosis = replace(diagnosis, statement=statement(diagnosis))
     return Outcome(diagnosis, known.recordings, model, units, before, again, after, parts, everything, proposal.file)
 
 

@@ -111,7 +111,8 @@ class Place:
 
     Where they share a clock: since when the first of them had begun, and how long they last in all, with what lies
     between them; 0 where each has a clock of its own. A part of a recording begins `within_s` after it, and the whole
-    lasts `whole_s` (0: it is the whole). Where each has a clock of its own, those given before it last `before_s`.
+    lasts `whole_s` (0: it is the whole). Where each has a clock of its own, those given before it last `before_s`, and
+    all of them `all_s`.
     """
 
     number: int = 0
@@ -121,6 +122,7 @@ class Place:
     within_s: float = 0.0
     whole_s: float = 0.0
     before_s: float = 0.0
+    all_s: float = 0.0
 
 
 ALONE = Place()
@@ -154,6 +156,18 @@ class Coefficients:
     def since_s(self) -> float:
         """Time between the beginning of the first recording and that of this one, as far as a clock tells [s]."""
         return self.place.since_s if self.place is not None else 0.0
+
+    @property
+    def course_s(self) -> tuple[float, float]:
+        """How much of all recordings lies before this one, and how long they last together [s].
+
+        By the clock that they share, or one after the other as they are given; this one alone, where it is alone.
+        """
+        place = self.place
+        if place is None:
+            return 0.0, self.duration_s
+        before_s = place.since_s if place.span_s else place.before_s
+        return before_s, place.span_s or place.all_s or self.duration_s
 
     @property
     def xi(self) -> FloatArray:
@@ -192,7 +206,8 @@ class Form:
     recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
     doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What is `described`
-    is for design models of real machines and never a candidate.
+    is for design models of real machines and never a candidate. What lies `outside` of the vocabulary, in these words,
+    is a rival only: where it explains best, the verdict is that nothing known does.
     """
 
     name: str
@@ -204,6 +219,7 @@ class Form:
     seen: bool = False
     described: bool = False
     by_pressure: bool = False
+    outside: str = ""
 
 
 @dataclass(frozen=True, slots=True)

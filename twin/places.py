@@ -21,5 +21,5 @@ def places(recordings: Sequence[Recording]) -> list[Place]:
     apart = all(before[1] <= after[0] for before, after in pairwise(spans))
     if of < 2 or not apart or sum(r.duration_s for r in recordings) < _FILLED * whole_s:
         lasting_s = [0.0, *accumulate(r.duration_s for r in recordings)]
-        return [Place(k, of, before_s=lasting_s[k]) for k in range(of)]
+        return [Place(k, of, before_s=lasting_s[k], all_s=lasting_s[-1]) for k in range(of)]
     return [Place(k, of, float(r.time_s[0]) - spans[0][0], whole_s) for k, r in enumerate(recordings)]

@@ -34,7 +34,9 @@ EP_AIR = 18  # by how much a unit of the stem enlarges the chamber [1/position]
 EP_ATMOSPHERE = 19  # the atmosphere's absolute pressure [pressure]
 EP_AMBIENT = 20  # what a reading is at the atmosphere's [pressure]
 EP_SLEW = 21  # highest slope of what the converter aims at [pressure/s]; FOREVER: it follows the command
-EP_COUNT = 22
+EP_RINGS_S = 22  # of a converter that swings to its goal: 1 / its natural frequency [s]; 0: it does not
+EP_DAMPING = 23  # and its damping ratio, below 1
+EP_COUNT = 24
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -109,7 +111,9 @@ S_EARLY = S_AT_OPEN + 1  # how early that clock ticks, of what it leaves open [1
 S_BAND = S_EARLY + 1  # by how much the reading has to change to be reported [position]
 S_LATE_S = S_BAND + 1  # how long a reading waits behind the clock that shows in it [s]
 S_OTHER = S_LATE_S + 1  # excess at the open end of a core that leaves its range at both [fraction of travel]
-S_COUNT = S_OTHER + 1
+S_JUMP = S_OTHER + 1  # by how much the zero jumps [position], and when [s]
+S_JUMP_S = S_JUMP + 1
+S_COUNT = S_JUMP_S + 1
 
 FOREVER = 1e30
 

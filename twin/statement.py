@@ -26,7 +26,7 @@ def statement(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict == "unexplained":
         return (
             f"Unexplained: the design is off by {g.before:.2g} % of travel ({g.retuned:.2g} % re-tuned, noise "
-            f"{g.noise_floor:.2g} %), and none of the known effects accounts for it."
+            f"{g.noise_floor:.2g} %), and none of the known effects accounts for it{_looks_like(diagnosis)}."
         )
     names = " and ".join(_named(cause) for cause in diagnosis.causes)
     closed = g.reducible_closed
@@ -36,6 +36,12 @@ def statement(diagnosis: Diagnosis) -> str:
         f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
         f"(noise {g.noise_floor:.2g} %){share}."
     )
+
+
+def _looks_like(diagnosis: Diagnosis) -> str:
+    """What it looks like, though that is none of the known effects."""
+    rival = diagnosis.residual_signature.get("looks_like")
+    return f"; it looks as if {rival['what']}" if isinstance(rival, Mapping) else ""
 
 
 def _at_most(diagnosis: Diagnosis) -> str:

@@ -14,6 +14,7 @@ from scipy.signal import welch
 from logs.recording import FloatArray
 from twin.case import Case
 from twin.choose.decide import Decision
+from twin.choose.outside import outside_of
 from twin.fit.trial import Trial
 from twin.repeatable import Disturbance, repeated_share
 from twin.stages import StageResult
@@ -39,6 +40,9 @@ def residual_signature(
         "repeats": repeated_share(residuals, trials),
         **_spectrum(trials, residuals),
     }
+    rival = next((d for d in result.decisions if outside_of(d)), None)
+    if rival is not None:
+        found["looks_like"] = _looks_like(case, rival)
     if loud is not None:
         found["does_not_repeat"] = {
             "signal": loud.signal,
@@ -50,6 +54,15 @@ def residual_signature(
         unit = case.scales.position_unit if swing.signal == "position" else case.scales.pressure_unit
         found["swings"] = {**asdict(swing), "unit": unit}
     return found
+
+
+def _looks_like(case: Case, decision: Decision) -> dict[str, object]:
+    """What explains the channel best and is none of the known effects, in words and numbers."""
+    rival = outside_of(decision)
+    assert rival is not None and rival.form is not None
+    values = next(i.values for i in decision.accepted.plant.inserted if i.effect == rival.name)
+    named = zip(rival.form.parameters, values, strict=True)
+    return {"what": rival.form.outside, **{p.name: {"value": v, "unit": case.scales.unit(p.kind)} for p, v in named}}
 
 
 def _signal(decision: Decision) -> str:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.choose.decide import Decision
+from twin.choose.outside import outside_of
 from twin.choose.weigh import Weighed, Weights, weigh
 from twin.diagnosis import Cause, Estimate, Ranked, Verdict
 from twin.fit.fitting import Fit
@@ -50,7 +51,7 @@ def pronounce(
     causes = _causes(result, weighed, sensing)
     sets = tuple(s for w in weighed for s in w.sets)
     ranking = _ranking(weighed, sensing)
-    if _unexplained(result, ep_share, sensing):
+    if _unexplained(result, ep_share, sensing) or any(outside_of(d) for d in result.decisions):
         return Judgement("unexplained", (), ranking, ())
     effects = [c for c in causes if not c.name.startswith("parameter:")]
     if not causes:

@@ -46,7 +46,7 @@ def test_recordings_one_after_the_other_share_a_clock_in_any_order() -> None:
 @pytest.mark.parametrize("begins", [(0.0, 0.0), (0.0, 5.0), (0.0, 5000.0), (3.0,)])
 def test_recordings_with_clocks_of_their_own(begins: tuple[float, ...]) -> None:
     found = places([blank(begin_s) for begin_s in begins])
-    assert [replace(p, before_s=0.0) for p in found] == [Place(k, len(begins)) for k in range(len(begins))]
+    assert [replace(p, before_s=0.0, all_s=0.0) for p in found] == [Place(k, len(begins)) for k in range(len(begins))]
     assert [p.before_s for p in found] == pytest.approx([9.9 * k for k in range(len(begins))])
 
 

@@ -5,34 +5,56 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_DEAD_S
+from twin.slots import EP_DAMPING, EP_DEAD_S, EP_RINGS_S
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_DEAD_S] = values[0]
 
 
+def _rings(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_RINGS_S, EP_DAMPING]] = values
+
+
+_DELAY = Parameter(
+    name="delay",
+    kind="time",
+    lower=0.0,
+    upper=10.0,
+    starts=(0.05, 0.15, 0.4, 1.0),
+    scale=0.4,
+    doc="pure delay between command and pressure",
+)
+_SWING = Parameter(
+    name="swing",
+    kind="time",
+    lower=0.0,
+    upper=5.0,
+    starts=(0.1, 0.3, 0.8),
+    scale=0.4,
+    doc="period of its swing over 2 pi",
+)
+_DAMPING = Parameter(
+    name="damping",
+    kind="fraction",
+    lower=0.02,
+    upper=0.6,
+    starts=(0.15, 0.4),
+    scale=0.3,
+    doc="damping ratio of the swing",
+    neutral=0.3,
+    size=False,
+)
+
 EFFECT = Effect(
     name="dead_time",
     stage="ep",
     claim="Pressure answers a command only after a pure delay.",
-    equations="dp/dt = (u(t - d) - p) / tau",
+    equations="dp/dt = (u(t - d) - p) / tau; only told from it: a pilot v before the lag that swings, swing^2 v'' + "
+    "2 damping swing v' + v = u",
     source="Ljung, System Identification, 2nd ed. (1999), section 4.2",
     forms=(
-        Form(
-            "pure_delay",
-            (
-                Parameter(
-                    name="delay",
-                    kind="time",
-                    lower=0.0,
-                    upper=10.0,
-                    starts=(0.05, 0.15, 0.4, 1.0),
-                    scale=0.4,
-                    doc="pure delay between command and pressure",
-                ),
-            ),
-            _apply,
-        ),
+        Form("pure_delay", (_DELAY,), _apply),
+        Form("rings", (_SWING, _DAMPING), _rings, by_pressure=True, outside="the converter swings to its goal"),
     ),
 )

@@ -84,8 +84,8 @@ def _wear(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _sudden(c: Coefficients, values: Sequence[float]) -> None:
-    span_s = c.duration_s if c.place is None or c.place.span_s == 0.0 else c.place.span_s
-    when_s = values[1] * span_s - c.since_s
+    before_s, all_s = c.course_s
+    when_s = values[1] * all_s - before_s
     if when_s <= 0.0:
         c.widen(values[0])
     else:

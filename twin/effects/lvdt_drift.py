@@ -18,6 +18,8 @@ from twin.slots import (
     S_DRIFT_AMP,
     S_DRIFT_RATE,
     S_DRIFT_TAU_S,
+    S_JUMP,
+    S_JUMP_S,
     S_KNOTS,
     S_WANDER_S,
     S_ZERO,
@@ -83,6 +85,21 @@ _PERIOD = Parameter(
 )
 
 
+_STEP = replace(_CHANGE, name="zero", starts=(-0.005, 0.005), doc="by how much the zero jumps")
+_WHEN = Parameter(
+    name="when",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=tuple((0.5 + k) / 16 for k in range(16)),
+    scale=0.2,
+    doc="when it jumps, fraction of all recordings",
+    neutral=0.5,
+    smooth=False,
+    size=False,
+)
+
+
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_RATE] = values[0]
     c.sensor[S_ZERO] += values[0] * c.since_s
@@ -129,13 +146,22 @@ def _wander(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_KNOTS : S_KNOTS + KNOTS] = values
 
 
+def _jump(c: Coefficients, values: Sequence[float]) -> None:
+    before_s, all_s = c.course_s
+    at_s = values[1] * all_s - before_s
+    if at_s <= 0.0:
+        c.sensor[S_ZERO] += values[0]
+    else:
+        c.sensor[[S_JUMP, S_JUMP_S]] = values[0], at_s
+
+
 EFFECT = Effect(
     name="lvdt_drift",
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
     equations="y = x + rate t, or x + change (1 - exp(-t / settling)), "
     "or x + there (1 - cos) + along sin (2 pi t / period), or x + a spline through its value at ten times, "
-    "or x + a curve of each recording's own through up to five values (apart)",
+    "or x + a curve of each recording's own through up to five values (apart); a jump is no drift, only told from it",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(
         Form("linear", (_RATE,), _linear),
@@ -143,6 +169,7 @@ EFFECT = Effect(
         Form("cycle", (_THERE, _ALONG, _PERIOD), _cycle),
         Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),
+        Form("jump", (_STEP, _WHEN), _jump, outside="the zero of the reading jumps"),
     ),
     drifts=True,
     twins=("friction_drift", "creep"),

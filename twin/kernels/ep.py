@@ -10,6 +10,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
+from twin.kernels.ringing import ringing_pass
 from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
@@ -22,6 +23,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
+    EP_RINGS_S,
     EP_SLEW,
     EP_SUPPLY,
     EP_TANK,
@@ -60,6 +62,9 @@ def ep_kernel(
     if c[EP_SLEW] < FOREVER:
         source, goal = goal, np.empty(out.size)
         _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
+    if c[EP_RINGS_S] > 0.0:
+        source, goal = goal, np.empty(out.size)
+        ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
     if boosted(c):
         where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
         booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)

@@ -27,6 +27,8 @@ from twin.slots import (
     S_GAIN,
     S_HOLD_PHASE_S,
     S_HOLD_S,
+    S_JUMP,
+    S_JUMP_S,
     S_KNOTS,
     S_LAG2_S,
     S_LAG_S,
@@ -78,6 +80,8 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
         y = y + c[S_DRIFT_RATE] * t
     if c[S_DRIFT_AMP] != 0.0:
         y = y - c[S_DRIFT_AMP] * np.expm1(-t / c[S_DRIFT_TAU_S])
+    if c[S_JUMP] != 0.0:
+        y = y + np.where(t >= c[S_JUMP_S], c[S_JUMP], 0.0)
     if c[S_CYCLE_S] > 0.0:
         phase = 2.0 * np.pi / c[S_CYCLE_S] * t
         y = y + c[S_CYCLE_COS] * (1.0 - np.cos(phase)) + c[S_CYCLE_SIN] * np.sin(phase)

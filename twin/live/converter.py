@@ -9,6 +9,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
 from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, _slewed, boosted
+from twin.kernels.ringing import ringing_pass
 from twin.slots import (
     EP_AIR,
     EP_AMBIENT,
@@ -20,6 +21,7 @@ from twin.slots import (
     EP_GAIN,
     EP_RATE_DOWN,
     EP_RATE_UP,
+    EP_RINGS_S,
     EP_SLEW,
     EP_SUPPLY,
     EP_TANK,
@@ -38,7 +40,7 @@ class Converter:
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
         bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
         self._bounded = bool(bounded)
-        self._aim = p0
+        self._aim, self._ringing = p0, np.array([p0, 0.0])
         self._sunk = np.zeros(1)
         self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
 
@@ -80,6 +82,9 @@ class Converter:
         if c[EP_SLEW] < FOREVER:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._aim = _slewed(time_s, source, offsets, float(c[EP_SLEW]), self._aim, goal)
+        if c[EP_RINGS_S] > 0.0:
+            source, goal = goal, np.empty(int(offsets[1]) + 1)
+            ringing_pass(time_s, offsets, source, c, self._ringing, goal)
         return goal
 
     def _delayed(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:

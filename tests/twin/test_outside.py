@@ -1,0 +1,84 @@
+"""What is none of the known effects is told from those that it resembles, and named in words only."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.signal import lti, step
+
+from control.design import DesignModel
+from logs.recording import Recording
+from tests.twin.judged import a_record
+from twin.catalog import effect, effects
+from twin.choose.search import SearchRules
+from twin.diagnose import Outcome, Settings, diagnose
+from twin.effect import Place
+from twin.plant import Inserted, Plant, pressure_response
+from twin.slots import S_JUMP, S_JUMP_S, S_ZERO
+from twin.timegrid import make_grid
+
+DESIGN = DesignModel()
+
+
+def with_form(name: str, form: str, *values: float) -> Plant:
+    return Plant(DESIGN, (Inserted(name, effect(name).form(form), values),))
+
+
+def answered(*records: Recording) -> Outcome:
+    return diagnose(list(records), DESIGN, settings=Settings(search=SearchRules(most=1)))
+
+
+@pytest.mark.parametrize(
+    ("plant", "words"),
+    [
+        (with_form("lvdt_drift", "jump", 0.02, 0.43), "the zero of the reading jumps"),
+        (with_form("dead_time", "rings", 0.35, 0.25), "the converter swings to its goal"),
+    ],
+)
+def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: str) -> None:
+    found = answered(a_record(plant)).diagnosis
+    assert found.verdict == "unexplained" and not found.causes
+    assert found.residual_signature["looks_like"]["what"] == words  # type: ignore[index]
+    assert words in found.statement
+
+
+def test_what_it_resembles_is_named_as_before() -> None:
+    for name, form, values in (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,))):
+        found = answered(a_record(with_form(name, form, *values))).diagnosis
+        assert [c.name for c in found.causes] == [name]
+
+
+def test_beside_a_cause_that_explains_without_it_a_rival_is_not_heard() -> None:
+    """A small jump beside a large lag: the lag is named."""
+    large = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.9,))
+    plant = with_form("lvdt_drift", "jump", 0.001, 0.5)
+    found = diagnose([a_record(Plant(DESIGN, (large, *plant.inserted)))], DESIGN).diagnosis
+    assert {c.name for c in found.causes} & {"additional_lag", "sensor_lag"}
+
+
+def test_no_rival_is_in_an_updated_model() -> None:
+    rivals = {(e.name, f.name) for e in effects().values() for f in e.forms if f.outside}
+    assert rivals == {("lvdt_drift", "jump"), ("dead_time", "rings")}
+    record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))
+    assert not answered(record).model.effects
+
+
+def test_the_swing_is_of_second_order_before_the_lag() -> None:
+    time_s = np.arange(0.0, 8.01, 0.05)
+    grid = make_grid(time_s, 0.02)
+    command = np.where(time_s > 0.0, 9.0, 6.0)
+    got = pressure_response(with_form("dead_time", "rings", 0.4, 0.3).coefficients(8.0), grid, command, 6.0)
+    _, want = step(lti([1.0], np.polymul([0.16, 0.24, 1.0], [DESIGN.ep_tau_s, 1.0])), T=time_s)
+    assert np.max(np.abs(got[grid.offsets] - 6.0 - 3.0 * want)) < 1e-3
+
+
+def test_a_jump_happens_once_in_all_recordings() -> None:
+    plant = with_form("lvdt_drift", "jump", 0.02, 0.5)
+    at = [Place(k, 3, before_s=100.0 * k, all_s=300.0) for k in range(3)]
+    first, second, third = (plant.coefficients(100.0, p).sensor for p in at)
+    assert second[S_JUMP_S] == pytest.approx(50.0) and first[S_JUMP_S] == pytest.approx(150.0)
+    assert third[S_ZERO] == 0.02 and third[S_JUMP] == 0.0
+    shared = replace(at[2], since_s=400.0, span_s=500.0)
+    assert plant.coefficients(100.0, shared).course_s == (400.0, 500.0)

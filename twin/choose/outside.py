@@ -1,0 +1,25 @@
+"""Rivals that are none of the known effects: where one of them explains best, nothing known does.
+
+Without them the nearest known effect would be named for what it only resembles: a zero that jumps is no drift.
+"""
+
+from __future__ import annotations
+
+from twin.choose.decide import Decision, DecisionRules
+from twin.choose.trim import dropped
+from twin.fit.space import Cause
+
+
+def outside_of(decision: Decision) -> Cause | None:
+    """What is accepted and lies outside of the vocabulary, if anything."""
+    causes = decision.accepted.space.causes if decision.explained else ()
+    return next((c for c in causes if c.form is not None and c.form.outside), None)
+
+
+def inside(decision: Decision, rules: DecisionRules) -> Decision:
+    """The decision without what lies outside, where the known causes beside it explain the gap by themselves."""
+    rival = outside_of(decision)
+    smaller = None if rival is None else dropped(decision, rival.name)
+    if smaller is None or not smaller.names or smaller.rest >= rules.unexplained:
+        return decision
+    return smaller
