@@ -148,16 +148,16 @@ class Searcher:
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
         """What stands beside the likeliest hypotheses and was not fitted on the way up.
 
-        With the numbers accused that they had to move far; and without each one of three causes, which may have been
-        needed only as long as the third was missing.
+        With the numbers accused that they had to move far; and without each one of the causes, which may have been
+        needed only as long as another was missing, or was alone in another form.
         """
         todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
         for one in self._likely(found)[: self.rules.beam] if found else []:
             causes = one.space.causes
             beside = [(*causes, *some) for some in suspected(one)]
-            if len(causes) > 2:
+            if len(causes) > 1:
                 beside += [causes[:k] + causes[k + 1 :] for k in range(len(causes))]
-            todo |= {exactly(some): (some, one) for some in beside}
+            todo = {exactly(some): (some, one) for some in beside} | todo  # from the likeliest that has it
         known = {exactly(f.space.causes) for f in found}
         with ThreadPoolExecutor(self.rules.threads) as pool:
             return list(pool.map(lambda p: self._fit_from(*p), (p for key, p in todo.items() if key not in known)))
