@@ -120,11 +120,15 @@ def make_space(
     return Space(base, tuple(causes), tuple(kept), tuple(unknowns), scales)
 
 
+#: By how much of itself a number may be too small at most; a short lag may be ten times as long.
+_HIGHEST = {"offset": 1.0, "tau": 9.0, "ep_tau": 9.0}
+
+
 def _number(design: DesignModel, name: str, spread: float) -> Unknown:
     centre = nominal(design, name)
     size = reference(design, name)
     lowest = -0.9 * centre / size if name != "offset" else -1.0
-    highest = 4.0 if name != "offset" else 1.0
+    highest = _HIGHEST.get(name, 4.0)
     return Unknown(name, centre, size, lowest, highest, spread, 1e-3)
 
 
