@@ -17,6 +17,7 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray
+from twin.place import Place
 from twin.slots import GRID, neutral_ep, neutral_sensor, neutral_valve
 
 _XI = np.linspace(0.0, 1.0, GRID)
@@ -103,29 +104,6 @@ class Scales:
 
 def _no_bends() -> tuple[FloatArray, FloatArray, FloatArray]:
     return np.zeros(1), np.zeros(1), np.ones(1)
-
-
-@dataclass(frozen=True, slots=True)
-class Place:
-    """Where a recording stands among those that are diagnosed together: its number, of how many.
-
-    Where they share a clock: since when the first of them had begun, and how long they last in all, with what lies
-    between them; 0 where each has a clock of its own. A part of a recording begins `within_s` after it, and the whole
-    lasts `whole_s` (0: it is the whole). Where each has a clock of its own, those given before it last `before_s`, and
-    all of them `all_s`.
-    """
-
-    number: int = 0
-    of: int = 1
-    since_s: float = 0.0
-    span_s: float = 0.0
-    within_s: float = 0.0
-    whole_s: float = 0.0
-    before_s: float = 0.0
-    all_s: float = 0.0
-
-
-ALONE = Place()
 
 
 @dataclass(slots=True)

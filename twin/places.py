@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from itertools import accumulate, pairwise
 
 from logs.recording import Recording
-from twin.effect import Place
+from twin.place import Place
 
 #: Recordings that together fill less than this share of the time from the first to the last have clocks of their own,
 #: as far as a drift is concerned: what went on in between nobody knows.

@@ -12,10 +12,11 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Form, Place
+from twin.effect import Coefficients, Form
 from twin.kernels.ep import ep_kernel
 from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
 from twin.kernels.valve import valve_kernel
+from twin.place import Place
 from twin.refresh import Freshness
 from twin.slots import (
     EP_TAU_FALL_S,

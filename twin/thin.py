@@ -15,9 +15,9 @@ import numpy.typing as npt
 
 from logs.recording import DataNote, FloatArray, Recording
 from twin.case import Case, Span, fine_step_s
-from twin.effect import Place
 from twin.fit.trial import Trial, make_trial
 from twin.noise.model import NoiseModel, SignalNoise
+from twin.place import Place
 from twin.refresh import Freshness
 from twin.simulate import beginning
 from twin.stages import StageResult, drive_by_measured

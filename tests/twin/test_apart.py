@@ -14,8 +14,9 @@ from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
-from twin.effect import Coefficients, Place
+from twin.effect import Coefficients
 from twin.fit.channel import position_channel, predict_reading
+from twin.place import Place
 from twin.plant import Inserted, Plant, reading_response
 from twin.slots import KNOTS
 from twin.timegrid import make_grid

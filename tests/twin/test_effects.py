@@ -11,7 +11,8 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.catalog import effect, effects
-from twin.effect import Effect, Form, Parameter, Place, Scales
+from twin.effect import Effect, Form, Parameter, Scales
+from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
 from twin.timegrid import make_grid
 

@@ -14,7 +14,7 @@ from tests.twin.judged import a_record
 from twin.catalog import effect, effects
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
-from twin.effect import Place
+from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response
 from twin.slots import S_JUMP, S_JUMP_S, S_ZERO
 from twin.timegrid import make_grid

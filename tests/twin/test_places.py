@@ -13,8 +13,8 @@ from tests.twin.trials import staircase, trial_of
 from twin.case import make_case
 from twin.catalog import effect
 from twin.diagnose import diagnose
-from twin.effect import Place
 from twin.fit.channel import predict_reading
+from twin.place import Place
 from twin.places import places
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording

@@ -10,7 +10,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray, Recording
-from twin.effect import ALONE, Place
+from twin.place import ALONE, Place
 from twin.refresh import Freshness
 from twin.timegrid import TimeGrid, make_grid
 
