@@ -35,7 +35,7 @@ from twin.refresh import refreshed_together
 from twin.rounding import lacking_codes, rounding_down
 from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
-from twin.statement import statement
+from twin.statement import signed
 from twin.thin import look_at, on_everything
 from twin.timing import settled_timing
 from twin.tuned import retuned_fit
@@ -138,8 +138,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     model, units = _model(Plant(final.design, tuple(i for i in final.inserted if i not in late)), case)
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop, gap_by_condition=apart)
     if judgement.verdict == "unexplained":
-        diagnosis = replace(diagnosis, residual_signature=residual_signature(case, result, itself.loud, itself.swing))
-        diagnosis = replace(diagnosis, statement=statement(diagnosis))
+        diagnosis = signed(diagnosis, residual_signature(case, result, itself.loud, itself.swing))
     return Outcome(diagnosis, known.recordings, model, units, before, again, after, parts, everything, proposal.file)
 
 

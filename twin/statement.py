@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from twin.diagnosis import Cause, Diagnosis
 
@@ -36,6 +37,12 @@ def statement(diagnosis: Diagnosis) -> str:
         f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
         f"(noise {g.noise_floor:.2g} %){share}."
     )
+
+
+def signed(diagnosis: Diagnosis, signature: Mapping[str, object]) -> Diagnosis:
+    """The diagnosis with the signature of what it leaves, which the sentence may speak of."""
+    diagnosis = replace(diagnosis, residual_signature=signature)
+    return replace(diagnosis, statement=statement(diagnosis))
 
 
 def _looks_like(diagnosis: Diagnosis) -> str:

@@ -34,6 +34,8 @@ from twin.slots import (
 #: Pressure ratio below which the flow is choked: of a sharp-edged orifice, and near that of valves.
 _CHOKED = 0.5
 
+Pair = tuple[float, float]
+
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def outflow(p: float, atmosphere: float) -> float:
@@ -49,21 +51,14 @@ def outflow(p: float, atmosphere: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _chamber_step(
-    p: float,
-    v: tuple[float, float],
-    h: float,
-    taken: float,
-    room: float,
-    full: tuple[float, float],
-    wide: float,
-    idle: float,
-) -> float:
+def _chamber_step(p: float, v: Pair, h: float, chamber: Pair, full: Pair, opening: Pair) -> float:
     """Pressure after `h` seconds in which the pilot goes from `v[0]` to `v[1]`.
 
-    `taken`: rate at which the stem takes pressure; `room`: the chamber's volume, 1 with the stem open; `full`: rates
-    through an opening that is full, up and down; `wide`: error at which it is; `idle`: error up to which it is shut.
+    `chamber`: rate at which the stem takes pressure, and volume, 1 with the stem open; `full`: rates through an opening
+    that is full, up and down; `opening`: errors at which it is, and up to which it is shut.
     """
+    taken, room = chamber
+    wide, idle = opening
     slope, left = (v[1] - v[0]) / h, h
     demand = slope * room + taken
     for _ in range(5):
@@ -123,7 +118,8 @@ def booster_pass(
             gauge = p + 0.5 * (p - before) - c[EP_AMBIENT]
             taken = c[EP_AIR] * (gauge + c[EP_ATMOSPHERE]) * speed
             full = (c[EP_FULL_UP], c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
-            new = _chamber_step(p, (v, new_v), h, taken, 1.0 + c[EP_AIR] * max(x, 0.0), full, c[EP_OPEN], idle)
+            chamber = (taken, 1.0 + c[EP_AIR] * max(x, 0.0))
+            new = _chamber_step(p, (v, new_v), h, chamber, full, (c[EP_OPEN], idle))
             new = min(c[EP_CLIP], new)
             if c[EP_TANK] < FOREVER:
                 sunk = sunk * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)

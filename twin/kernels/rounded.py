@@ -74,6 +74,32 @@ def _speed(pull: float, half: float, tau_s: float, v0: float) -> tuple[float, fl
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _moved(
+    x: float,
+    h: float,
+    between: tuple[float, float],
+    stops: tuple[float, float, float, float],
+    lags_s: tuple[float, float],
+    rates: tuple[float, float],
+    v0: float,
+) -> float:
+    """The stem after `h`. `between`: the curves, friction against closing and against opening; `stops`: of what it is
+    pulled to, of itself.
+    """
+    middle = 0.5 * (between[0] + between[1])
+    way = 1.0 if middle > x else -1.0
+    tau_s, rate = (lags_s[0], rates[0]) if way > 0.0 else (lags_s[1], rates[1])
+    v, slope = _speed(way * (middle - x), 0.5 * (between[1] - between[0]), tau_s, v0)
+    # forces balance between the stops only: beyond, what is too much pulls no harder
+    room = max(0.0, stops[1] - x if way > 0.0 else x - stops[0])
+    if tau_s * v > room:
+        v, slope = room / tau_s, tau_s
+    moved = min(v * slope * (1.0 - np.exp(-h / slope)), rate * h)
+    new: float = max(stops[2], min(stops[3], x + way * moved))
+    return new
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def rounded_steps(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -94,7 +120,8 @@ def rounded_steps(
     bent = more_at.size > 1
     place = (0.0, (more_at.size - 1) / c[V_TRAVEL])
     varies, wear, v0 = widening.size > 1, c[V_WEAR], max(c[V_ROUNDED], 1e-9)
-    lags_s = (max(c[V_TAU_CLOSE_S], 1e-9), max(c[V_TAU_OPEN_S], 1e-9))
+    lags_s, rates = (max(c[V_TAU_CLOSE_S], 1e-9), max(c[V_TAU_OPEN_S], 1e-9)), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
+    ends = (stops[0], stops[1], stops[2], stops[3])
     more, less, softer = 0.0, 0.0, 1.0
     x, travelled = state[0], state[1]
     out[0] = x
@@ -107,17 +134,7 @@ def rounded_steps(
                 less, softer = _curve_at(x, place, less_at), _curve_at(x, place, softer_at)
             bottom = softer * _curve_at(p - wide - more, grid, closing)
             top = max(bottom, softer * _curve_at(p + wide - less, grid, opening))
-            middle = 0.5 * (bottom + top)
-            way = 1.0 if middle > x else -1.0
-            # forces balance between the stops only: beyond, what is too much pulls no harder
-            room = (stops[1] - x) if way > 0.0 else (x - stops[0])
-            pull, half = way * (middle - x), 0.5 * (top - bottom)
-            tau_s, rate = (lags_s[0], c[V_RATE_CLOSE]) if way > 0.0 else (lags_s[1], c[V_RATE_OPEN])
-            v, slope = _speed(pull, half, tau_s, v0)
-            if tau_s * v > max(room, 0.0):
-                v, slope = max(room, 0.0) / tau_s, tau_s
-            moved = min(v * slope * (1.0 - np.exp(-h / slope)), rate * h)
-            new = max(stops[2], min(stops[3], x + way * moved))
+            new = _moved(x, h, (bottom, top), ends, lags_s, rates, v0)
             travelled += abs(new - x)
             x = new
             out[f] = x
