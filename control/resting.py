@@ -60,9 +60,8 @@ def in_vain(soon: Belief, mark: tuple[float, float, float], pushes: int, late: b
     belief, and a plate that sticks nowhere. Where readings are `late`, what is believed lags too, and more is asked."""
     way = 1 if pushes > 0 else -1
     went_psi, went_in = way * (soon.inside.p - mark[0]), way * (soon.inside.w - mark[1])
-    visible_psi = max(IN_VAIN_PSI, 6.0 * soon.noise_psi) + 2.5 * mark[2]
-    if late:
-        visible_psi = max(LATE_PSI, 10.5 * soon.noise_psi) + mark[2]
+    least_psi, noises, surely = (LATE_PSI, 10.5, 1.0) if late else (IN_VAIN_PSI, 6.0, 2.5)
+    visible_psi = max(least_psi, noises * soon.noise_psi) + surely * mark[2]
     return abs(pushes) > 3 and went_psi > visible_psi and went_in < 0.3 * soon.compliance * went_psi
 
 
