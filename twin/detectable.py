@@ -91,11 +91,11 @@ def _nuisance(channel: Channel, base: Plant, scales: Scales) -> FloatArray:
 
 
 def _best_form(detector: Detector, effect: Effect) -> EffectTest:
-    """The form of an effect that shows first, as a share of its plausible range."""
+    """The form of an effect that shows first, as a share of its plausible range; of those that are candidates."""
     found = [
         (limit, form, main)
         for form in effect.forms
-        if (main := _main(form)) is not None
+        if not (form.outside or form.described) and (main := _main(form)) is not None
         for limit in [_form_limit(detector, effect, form, main)]
     ]
     limit, form, main = min(found, key=lambda one: one[0] / _reach(one[2]), default=(np.inf, None, None))

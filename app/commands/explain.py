@@ -144,7 +144,8 @@ def _describe(one: Effect) -> None:
     if one.twins:
         click.echo(f"looks much like: {', '.join(one.twins)}")
     for form in one.forms:
-        click.echo(f"form {form.name}" + ("" if form.parameters else ": there or not, without a number"))
+        rival = f": a rival, no form of it ({form.outside})" if form.outside else ""
+        click.echo(f"form {form.name}{rival}" + ("" if form.parameters else ": there or not, without a number"))
         for p in form.parameters:
             unit = Scales().unit(p.kind)
             click.echo(f"  {p.name} [{unit}] {p.lower:g} to {p.upper:g}, none at {p.neutral:g}: {p.doc}" if p.size else

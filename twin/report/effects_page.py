@@ -51,7 +51,8 @@ def _section(one: Effect) -> str:
 def _rows(form: Form) -> list[str]:
     if not form.parameters:
         return [f"| {form.name} | | | | | there or not, without a number |"]
-    name = f"{form.name} (design models only)" if form.described else form.name
+    note = " (design models only)" if form.described else " (a rival: named in words only)" if form.outside else ""
+    name = form.name + note
     return [
         f"| {name} | {p.name} | {Scales().unit(p.kind)} | {p.lower:g} .. {p.upper:g} | "
         f"{f'{p.neutral:g}' if p.size else 'shape'} | {p.doc} |"
