@@ -179,3 +179,15 @@ def test_a_guess_beside_what_is_sure_is_not_spoken() -> None:
     assert [d.names for d in spoken((guess,), Weights(), True)] == [()]
     assert spoken((guess,), Weights(), False) == (guess,)  # nothing is sure: whether it is upheld is decided later
     assert spoken((sure,), Weights(), True) == (sure,)
+
+
+def test_what_hardly_shows_on_a_signal_is_not_spoken_beside_what_is_sure() -> None:
+    """A design that leaves 1.3 times the noise is not another machine; alone it is judged later, by unseen data."""
+    leaves = [findings_of({("creep",): (1.0, 1000.0)}, mse) for mse in (20.0, 1.6, 1.8)]
+    sure, slight, clear = (
+        replace(decide(one, RULES), accepted=one.fits[0], explained=True, rest=0.0) for one in leaves
+    )
+    assert [d.names for d in spoken((sure, slight), Weights(), False)] == [("creep",), ()]
+    assert [d.names for d in spoken((slight,), Weights(), True)] == [()]
+    assert spoken((slight,), Weights(), False) == (slight,)
+    assert spoken((sure, clear), Weights(), False) == (sure, clear)

@@ -156,3 +156,21 @@ def test_one_that_bends_all_numbers_does_not_end_the_search() -> None:
     assert searcher._nothing_left([one(3.0, 10.0), one(12.0, 2.0)], none)
     assert not searcher._nothing_left([one(3.0, 70_000.0), one(12.0, 2.0)], none)
     assert not searcher._nothing_left([one(12.0, 2.0)], none)
+
+
+def test_without_either_cause_a_pair_is_fitted_from_where_the_pair_ended() -> None:
+    """Alone in another form a cause may have done better; what the pair found for it is tried by itself, too."""
+    bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
+    channel = channel_of(Plant(DESIGN, (bow,)))
+    base = Plant(DesignModel())
+    pair = (cause("lvdt_nonlinearity", "bow"), cause("creep", "one_tail"))
+    others = (cause("friction_drift", "linear"), cause("lvdt_nonlinearity", "bow"))
+    searcher = Searcher(channel, base, Scales(), SearchRules(threads=1))
+    ended, worse = (
+        fit(channel, make_space(base, causes, channel.numbers, Scales()), [start])
+        for causes, start in ((pair, np.zeros(8)), (others, np.zeros(7)))
+    )
+    found = searcher._neighbours([replace(worse, mse=worse.mse + 1.0), ended])
+    alone = [f for f in found if f.names == ("lvdt_nonlinearity",)]
+    assert len(alone) == 1 and alone[0].mse < 1.2
+    assert {f.names for f in found} >= {("lvdt_nonlinearity",), ("creep",), ("friction_drift",)}
