@@ -15,11 +15,12 @@ from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
-from twin.plant import Inserted, Plant
-from twin.refresh import fresh_rows, refreshed_together
+from twin.plant import Inserted, Plant, reading_response
+from twin.refresh import fresh_rows, freshness, refreshed_together
 from twin.simulate import simulate_recording
 from twin.stages import judge
 from twin.thin import look_at
+from twin.timegrid import make_grid
 
 AS_SEEN = Inserted("stale_samples", effect("stale_samples").form("as_seen"), ())
 _SIGNALS = ("time_s", "command", "position")
@@ -90,3 +91,15 @@ def test_one_slow_converter_for_both_signals_is_told_from_a_slow_position(stale:
     both = replace(stale, pressure=stale.pressure[fresh_rows(stale.position)])
     told = [refreshed_together(r) for r in (stale, coarse, both, replace(stale, pressure=None))]
     assert told == [False, False, True, False]
+
+
+def test_a_buffered_reading_is_as_old_as_it_waited() -> None:
+    """A stem that goes evenly is read where it was so long ago."""
+    time_s = 0.1 * np.arange(400)
+    form = effect("stale_samples").form("buffered")
+    c = Plant(DesignModel(), (Inserted("stale_samples", form, (0.0, 1.2)),)).coefficients(40.0)
+    grid, stem = make_grid(time_s, 0.02), 0.01 * np.linspace(0.0, 39.9, 1996)
+    seen = Recording("r", time_s, np.zeros(400), np.repeat(0.01 * time_s[::5], 5))
+    fresh = freshness(seen)
+    late = (0.01 * fresh.taken_s - reading_response(c, grid, stem, fresh))[50:] / 0.01
+    assert late == pytest.approx(np.full(350, 1.2), abs=1e-6)

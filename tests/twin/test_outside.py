@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,8 +14,13 @@ from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.catalog import effect, effects
+from twin.choose.decide import Decision, DecisionRules
+from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
+from twin.effect import Scales
+from twin.fit.fitting import Fit
+from twin.fit.space import Cause, make_space
 from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response
 from twin.slots import S_JUMP, S_JUMP_S, S_ZERO
@@ -82,3 +89,20 @@ def test_a_jump_happens_once_in_all_recordings() -> None:
     assert third[S_ZERO] == 0.02 and third[S_JUMP] == 0.0
     shared = replace(at[2], since_s=400.0, span_s=500.0)
     assert plant.coefficients(100.0, shared).course_s == (400.0, 500.0)
+
+
+def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:
+    """Beside a lag the jump takes a tenth of the gap, or most of it."""
+    lag = Cause("sensor_lag", effect("sensor_lag"), effect("sensor_lag").form("first_order"))
+    jump = Cause("lvdt_drift", effect("lvdt_drift"), effect("lvdt_drift").form("jump"))
+    for left, names in ((3.0, ("sensor_lag",)), (60.0, ("sensor_lag", "lvdt_drift"))):
+        none, alone, both = (a_fit(causes, mse) for causes, mse in (((), 100.0), ((lag,), left), ((lag, jump), 1.0)))
+        findings: Any = SimpleNamespace(none=none, fits=(alone, both), score=lambda f: -f.mse)
+        decision = Decision(findings, both, True, True, 0.0)
+        assert inside(decision, DecisionRules()).names == names
+        assert inside(replace(decision, accepted=alone), DecisionRules()).names == ("sensor_lag",)
+
+
+def a_fit(causes: tuple[Cause, ...], mse: float) -> Fit:
+    space = make_space(Plant(DESIGN), causes, (), Scales())
+    return Fit(space, np.zeros(len(space.unknowns)), mse, 0.0, np.zeros(1), np.zeros((1, 1)), 1)
