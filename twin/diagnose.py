@@ -157,8 +157,8 @@ def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Cas
     progress("noise and events", 1.0)
     design = plant.design
     sensing = sense(recordings, noise, design.travel, design.rate_limit)
-    reported = sensing.inserted() if sensing.band > 0.0 else ()
-    noise = as_reported(noise) if sensing.band > 0.0 else noise
+    on_change = sensing.band > 0.0
+    reported, noise = (sensing.inserted(), as_reported(noise)) if on_change else ((), noise)
     inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))
     seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
     case = make_case(recordings, design, inserted, *seen)

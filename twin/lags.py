@@ -6,7 +6,7 @@ from twin.effect import Parameter
 
 
 def lag_parameter(doc: str, usual: tuple[float, float]) -> tuple[Parameter]:
-    """A time constant [s]; `usual`: the range in which most of them lie."""
+    """A time constant [s]; `usual`: see `Parameter`."""
     return (
         Parameter(
             name="lag",

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.chain import chain_response
+from twin.chain import chain_response, takes_air
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
-from twin.slots import EP_AIR, S_CORE, V_REMEMBERS
+from twin.slots import S_CORE, V_REMEMBERS
 
 Predict = Callable[[Plant, Trial], FloatArray]
 
@@ -29,7 +29,7 @@ def predict_pressure(plant: Plant, trial: Trial) -> FloatArray:
 def pressure_fine(plant: Plant, trial: Trial) -> FloatArray:
     """Pressure on the fine grid from the command, and from the stem as it was read, should that take air."""
     c = plant.coefficients(trial.recording.duration_s, trial.place)
-    stem = trial.stem if c.ep[EP_AIR] > 0.0 else None
+    stem = trial.stem if takes_air(c.ep) else None
     return pressure_response(c, trial.grid, trial.recording.command, trial.start_pressure, stem)
 
 

@@ -46,8 +46,8 @@ def outflow(p: float, atmosphere: float) -> float:
     if ratio <= _CHOKED:
         return p + atmosphere
     above = (ratio - _CHOKED) / (1.0 - _CHOKED)
-    outflow: float = (p + atmosphere) * np.sqrt(max(0.0, 1.0 - above * above))
-    return outflow
+    flow: float = (p + atmosphere) * np.sqrt(max(0.0, 1.0 - above * above))
+    return flow
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
