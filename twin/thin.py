@@ -9,6 +9,7 @@ through windows spread evenly over it, each where the stem covers most of its ra
 from __future__ import annotations
 
 from dataclasses import replace
+from math import ceil, floor
 
 import numpy as np
 import numpy.typing as npt
@@ -30,7 +31,7 @@ MOST_ROWS = 20_000
 LOOK_ROWS = 12_000
 MOST_S = 2_400.0
 #: A record up to so long is looked at whole, in coarse steps [s], where the noise (share of travel) hides what they
-#: miss; up to so many rows none is left out.
+#: miss; up to so many rows none is left out that comes no faster than these steps.
 COARSE_S, COARSE_STEP_S, COARSE_NOISE = 6_000.0, 0.1, 8e-4
 COARSE_ROWS = 60_000
 #: Whatever the seconds, so few steps of simulation make no large record: a slow machine is read every ten seconds.
@@ -53,7 +54,7 @@ def look_at(case: Case) -> tuple[Case, list[DataNote]]:
     if rows == whole <= MOST_ROWS:
         return case, []
     coarse_s = COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0
-    share = 1.0 if coarse_s > 0.0 and rows <= COARSE_ROWS else min(1.0, LOOK_ROWS / rows)
+    share = _share(case, rows, coarse_s)
     trials = tuple(_trial(case, span, share, coarse_s) for span in spans)
     seen = sum(t.recording.n for t in trials)
     stride = rows / max(seen, 1)
@@ -66,6 +67,15 @@ def look_at(case: Case) -> tuple[Case, list[DataNote]]:
         spans=spans,
     )
     return look, [_note(case, trials, spans, rows, whole)]
+
+
+def _share(case: Case, rows: int, coarse_s: float) -> float:
+    """Share of the rows that the search sees: in coarse steps, all that do not come faster than these."""
+    least = min(1.0, LOOK_ROWS / rows)
+    if coarse_s <= 0.0 or rows > COARSE_ROWS:
+        return least
+    step_rows = rows * coarse_s / sum(r.duration_s for r in case.recordings)
+    return max(least, 1.0 / max(1, floor(step_rows)))
 
 
 def on_everything(case: Case, result: StageResult) -> StageResult:
@@ -135,7 +145,7 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     """The trial of one span, thinned to a `share` of its rows, in steps no shorter than `coarse_s`."""
     whole = case.trials[span.record]
     recording = whole.recording.slice(span.start, span.stop)
-    rows = kept_rows(recording.command, max(2, round(share * recording.n)))
+    rows = kept_rows(recording.command, max(2, ceil(share * recording.n)))
     thin = thinned(recording, rows)
     false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
@@ -166,7 +176,7 @@ def _led_in(trial: Trial, lead_s: float) -> Trial:
 
 
 def kept_rows(command: FloatArray, most: int) -> Rows:
-    """About `most` of the rows 0..n-1: the first, the last, both sides of every jump of the command, others evenly."""
+    """At most `most` of the rows 0..n-1, evenly; besides them the last, and both sides of every jump of the command."""
     n = command.size
     if most >= n:
         return np.arange(n, dtype=np.int64)
@@ -176,7 +186,7 @@ def kept_rows(command: FloatArray, most: int) -> Rows:
     if jumps.size > most // 4:  # a command that moves all the time has no edges; its largest ones are kept
         jumps = np.sort(jumps[np.argsort(change[jumps], kind="stable")[::-1][: most // 4]])
     edges = np.concatenate([[0, n - 1], jumps, jumps + 1])
-    stride = int(np.ceil(n / max(most - jumps.size, 2)))
+    stride = ceil(n / most)
     return np.unique(np.concatenate([edges, np.arange(0, n, stride)])).astype(np.int64)
 
 

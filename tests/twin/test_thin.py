@@ -125,6 +125,23 @@ def test_a_noisy_record_is_looked_at_whole_in_coarse_steps(toy: Recording, monke
     assert len(look(quiet, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9).spans) > 1
 
 
+@pytest.mark.parametrize(("every", "least", "most"), [(1, 0.5, 0.52), (2, 1.0, 1.0)])
+def test_in_coarse_steps_rows_that_come_faster_than_these_are_left_out(
+    toy: Recording, monkeypatch: pytest.MonkeyPatch, every: int, least: float, most: float
+) -> None:
+    """At 20 Hz every other row is enough for steps of 0.1 s; at 10 Hz none can be spared."""
+    rows = np.arange(0, toy.n, every)
+    case = make_case([thinned(toy, rows)], DesignModel())
+    look(case, monkeypatch, most_rows=rows.size - 1, most_s=200.0, coarse_s=1e9)
+    monkeypatch.setattr(thin, "COARSE_ROWS", rows.size)
+    monkeypatch.setattr(thin, "LOOK_ROWS", rows.size // 3)
+    seen = look_at(case)[0]
+    assert seen is not case
+    assert least <= seen.recordings[0].n / rows.size <= most
+    monkeypatch.setattr(thin, "LOOK_ROWS", rows.size)
+    assert look_at(case)[0].recordings[0].n == rows.size
+
+
 def test_a_window_is_not_compared_before_the_stem_has_forgotten(
     toy: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
