@@ -13,7 +13,7 @@ from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.chain import chain_response
 from twin.insert import inserted_from, plant_of
-from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at
+from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
 from twin.refresh import freshness
 from twin.slots import S_CORE, S_SEEN, V_REMEMBERS
 from twin.timegrid import TimeGrid, make_grid
@@ -123,22 +123,39 @@ def beginning(plant: Plant, recording: Recording, grid: TimeGrid) -> tuple[float
 def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
     """Whether the stem stands off where the pressure has it, and stays there for longer than its lag explains.
 
-    Then something slow holds it, which had been elsewhere before the recording.
+    Then something slow holds it, which had been elsewhere before the recording. A stem that lags behind a ramp stands
+    off, too, all along; but so does the design's.
     """
     head, cut = _head(plant, recording, grid)
-    before, after = (_off_target(plant, head, cut, rows) for rows in (slice(0, _FIRST_ROWS), slice(-_FIRST_ROWS, None)))
-    return abs(before) > _OFF * plant.design.travel and after / before > _STAYS
+    before = _off_target(plant, head, cut)
+    return abs(before) > _OFF * plant.design.travel and _late(plant, head, cut) / before > _STAYS
 
 
-def _off_target(plant: Plant, head: Recording, grid: TimeGrid, rows: slice) -> float:
-    """How far, in some rows, the reading is from where the design's play would let it rest [position]."""
-    d, readings = plant.design, head.position[rows]
-    start = float(_seen(head.pressure, float(head.command[0]))[0])
-    c = plant.coefficients(head.duration_s)
-    pressure = float(np.median(pressure_response(c, grid, head.command, start)[grid.offsets][rows]))
-    reading = float(np.median(readings[np.isfinite(readings)])) if np.isfinite(readings).any() else float("nan")
-    low, high = np.clip(d.compliance * (pressure - np.array([d.a1, d.a2])), 0.0, d.travel)
+def _off_target(plant: Plant, head: Recording, grid: TimeGrid) -> float:
+    """How far the first reading is from where the design's play would let it rest [position]."""
+    d, pressure = plant.design, _head_pressure(plant, head, grid)[grid.offsets]
+    reading = _median(head.position[:_FIRST_ROWS])
+    curves = np.array([d.a1, d.a2])
+    low, high = np.clip(d.compliance * (np.median(pressure[:_FIRST_ROWS]) - curves), 0.0, d.travel)
     return reading - float(np.clip(reading, low, high))
+
+
+def _late(plant: Plant, head: Recording, grid: TimeGrid) -> float:
+    """How far the last reading is from where the design would have it by then, had it been at rest [position]."""
+    c = plant.coefficients(head.duration_s)
+    at = stem_at(c, _median(head.position[:_FIRST_ROWS]))
+    stem = stem_response(c, grid, _head_pressure(plant, head, grid), at, at)
+    return _median((head.position - reading_response(c, grid, stem))[-_FIRST_ROWS:])
+
+
+def _head_pressure(plant: Plant, head: Recording, grid: TimeGrid) -> FloatArray:
+    """What the design makes of the commands, from the first pressure reading on, on the fine grid."""
+    start = float(_seen(head.pressure, float(head.command[0]))[0])
+    return pressure_response(plant.coefficients(head.duration_s), grid, head.command, start)
+
+
+def _median(values: FloatArray) -> float:
+    return float(np.median(values[np.isfinite(values)])) if np.isfinite(values).any() else float("nan")
 
 
 def _rests(plant: Plant, recording: Recording, grid: TimeGrid, moving: Start) -> bool:

@@ -147,3 +147,12 @@ def test_a_stem_that_moves_from_the_second_row_on_starts_where_it_was_read_first
     assert make_trial(slow, 0.02).start_position == pytest.approx(DESIGN.travel, abs=0.002)
     rest = replace(noisy, position=np.full(part.n, 0.2) + np.random.default_rng(9).normal(0.0, 5e-4, part.n))
     assert make_trial(rest, 0.02).start_position == pytest.approx(0.2, abs=2e-4)
+
+
+def test_a_stem_that_lags_behind_a_ramp_is_held_by_nothing() -> None:
+    """It stands off where the pressure has it for as long as the ramp lasts, and so does the design's."""
+    ramp = np.concatenate([np.linspace(4.0, 13.0, 450), np.linspace(13.0, 4.0, 450)])
+    for plant in (Plant(DESIGN), Plant(DESIGN, (inserted("creep", "one_tail", 0.03, 60.0),))):
+        for row in (250, 750):
+            part = recorded(plant, ramp).slice(row, 900)
+            assert not remembers(Plant(DESIGN), part, make_grid(part.time_s, 0.02))
