@@ -38,6 +38,17 @@ def _knot(at: float) -> Parameter:
     )
 
 
+#: A burr cuts one way only; one that helps is none.
+_BURR = Parameter(
+    name="height",
+    kind="pressure",
+    lower=0.0,
+    upper=2.5,
+    starts=(0.04, 0.25, 0.8),
+    scale=0.3,
+    doc="extra pressure at the centre, needed in one direction only",
+)
+
 #: Points of the travel at which the profile is free: four pieces for each of three waves along the stroke.
 KNOTS = tuple(k / 12 for k in range(13))
 
@@ -80,6 +91,14 @@ def _stem_spot(c: Coefficients, values: Sequence[float]) -> None:
     c.bend_at_stem(shape, -shape)
 
 
+def _closing_spot(c: Coefficients, values: Sequence[float]) -> None:
+    c.close_shift += values[0] * bump(c.xi, values[1], values[2])
+
+
+def _opening_spot(c: Coefficients, values: Sequence[float]) -> None:
+    c.open_shift -= values[0] * bump(c.xi, values[1], values[2])
+
+
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * detrended(bow(c.xi), c.xi))
 
@@ -107,11 +126,14 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
     equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
-    "or straight between points of the travel; stem_spot: e of the stem x",
+    "or straight between points of the travel; stem_spot: e of the stem x; closing_spot, opening_spot: e on one of the "
+    "two curves",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _spot),
         Form("stem_spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _stem_spot),
+        Form("closing_spot", (_BURR, _CENTRE, _WIDTH), _closing_spot),
+        Form("opening_spot", (_BURR, _CENTRE, _WIDTH), _opening_spot),
         Form("bow", (_height("extra half deadband at mid travel against the ends, 1.5 times"),), _bow),
         Form("open_end", (_height("extra half deadband at fully open"),), _open_end),
         Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),
