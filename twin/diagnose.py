@@ -22,7 +22,7 @@ from twin.diagnosis import Diagnosis
 from twin.effect import Scales
 from twin.fit.channel import predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, explained_to_noise, retuning_pays, upheld
+from twin.gap import GapParts, explained_to_noise, retuning_pays, shown_by_pressure, upheld
 from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
@@ -122,7 +122,8 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     result, judgement, parts = hearing.held_out(result, known.judgement, progress)
     everything = replace(everything, decisions=result.decisions)
     measured, wandering, plainly = case.sigma_p is not None, result.decisions[-1].floor, explained_to_noise(result)
-    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, measured, wandering, itself.disturbed, plainly)
+    known_of = (measured, wandering, itself.disturbed, plainly, shown_by_pressure(result))
+    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, *known_of)
     known.judgement = judgement
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

@@ -210,7 +210,8 @@ class Effect:
     (an asymmetry has no canonical middle). `same_as` gives, per form, the effects that no record of
     these signals can tell from it. `twins` are effects with a similar signature; `equations` and `source` are printed.
     What `drifts` makes repeats differ, and so hides in a noise that was measured between them. What is `erratic`
-    moves in jumps whose order hangs on the smallest difference: no model follows it for long.
+    moves in jumps whose order hangs on the smallest difference: no model follows it for long. A form of it that each
+    recording has apart also takes what it `hides`, which the laws of the other forms leave to be named.
     """
 
     name: str
@@ -226,6 +227,7 @@ class Effect:
     same_as: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     drifts: bool = False
     erratic: bool = False
+    hides: tuple[str, ...] = ()
 
     def form(self, name: str) -> Form:
         """The form called `name`; raises KeyError naming the forms there are."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.catalog import effects
 from twin.choose.decide import Decision
+from twin.choose.reform import lays_open
 from twin.choose.trim import LIKELY, belief
 from twin.closure import rms
 from twin.diagnosis import Cause, Verdict
@@ -106,6 +107,7 @@ def upheld(
     wandering: float = 1.0,
     disturbed: bool = False,
     exact: bool = False,
+    shown: Collection[str] = (),
 ) -> tuple[GapParts, Judgement]:
     """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
 
@@ -114,7 +116,7 @@ def upheld(
     needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
     `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
     prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see
-    `explained_to_noise`.
+    `explained_to_noise`; `shown`: see `shown_by_pressure`.
     """
     before, after = rms(parts.before), rms(parts.after)
     if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
@@ -122,11 +124,13 @@ def upheld(
     if not judgement.causes:
         return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
-        return parts, _only_seen(judgement, sensing) if before <= floor else judgement
+        return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
     vain = after > NO_BETTER * before or _doubted(judgement)
     # how much an unmeasured pressure wandered by itself nobody knows
     hardly = HARDLY if apart else SLIGHT
     if before <= hardly * floor or (vain and before < SLIGHT * floor):
+        if (left := _named_only(judgement, shown)).causes and not _doubted(left):
+            return parts, left
         verdict: Verdict = "unexplained" if disturbed else "no_gap"
         return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
     if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart, exact):
@@ -156,6 +160,15 @@ def explained_to_noise(result: StageResult) -> bool:
     return all(d.accepted.mse <= EXACT * d.floor for d in result.decisions if d.names)
 
 
+def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
+    """Causes of the converter for which the measured pressure speaks, whether or not they reach the stem.
+
+    A supply that gives too little for the last tenth of the range moves nothing where the stem is at its stop by then.
+    """
+    pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
+    return tuple(name for d in pressure if d.findings.none.mse > CLEAR**2 * d.floor for name in d.names)
+
+
 def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool, exact: bool) -> bool:
     """Whether the causes leave too much of the gap where no fit has seen it."""
     left, gap = after**2 - floor**2, before**2 - floor**2
@@ -171,11 +184,13 @@ def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], 
     return left > share * gap
 
 
-def _only_seen(judgement: Judgement, sensing: Sensing) -> Judgement:
-    """The judgement with those causes only that the readings themselves showed: there is no error for any other."""
-    causes = tuple(c for c in judgement.causes if c.name in sensing.accepted)
-    sets = tuple(s for s in judgement.confusable if s[0] in sensing.accepted)
-    return replace(judgement, verdict="effect" if len(causes) == 1 else "effects", causes=causes, confusable=sets)
+def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:
+    """The judgement with those causes only that stand in `names`: there is no error for any other."""
+    causes = tuple(c for c in judgement.causes if c.name in names)
+    sets = tuple(s for s in judgement.confusable if s[0] in names)
+    effects = sum(not c.name.startswith("parameter:") for c in causes)
+    verdict: Verdict = "parameter" if not effects else "effect" if effects == 1 else "effects"
+    return replace(judgement, verdict=verdict, causes=causes, confusable=sets)
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
@@ -202,11 +217,12 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
     for decision in named:
         kept = set(decision.names) - {name}
         smaller = [f for f in (decision.findings.none, *decision.findings.fits) if set(f.names) == kept]
+        smaller = [f for f in smaller if not lays_open(decision.accepted, f)]
         if name not in decision.names:
             fits[decision] = decision.accepted
-        elif name.startswith("parameter:") and kept:
+        elif kept and (name.startswith("parameter:") or not smaller):
             fits[decision] = _as_designed(decision, name, case)
-        elif smaller and kept:
+        elif kept:
             fits[decision] = min(smaller, key=lambda f: f.mse)
         elif not kept:
             fits[decision] = decision.findings.none
@@ -214,7 +230,7 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
 
 
 def _as_designed(decision: Decision, name: str, case: Case) -> Fit:
-    """The accepted causes less an accused number, which may not ride along either."""
+    """The accepted causes less one of them; an accused number may not ride along either."""
     accepted = decision.accepted
     causes = [c for c in accepted.space.causes if c.name != name]
     numbers = [n for n in accepted.space.numbers if f"parameter:{n}" != name]

@@ -33,6 +33,11 @@ def statement(diagnosis: Diagnosis) -> str:
     closed = g.reducible_closed
     share = f", which closes {100.0 * closed.value:.3g} % of what noise does not account for" if closed else ""
     what = "A design number is off" if diagnosis.verdict == "parameter" else "The design leaves something out"
+    if closed is None and diagnosis.causes and all(c.stage == "ep" for c in diagnosis.causes):
+        return (
+            f"{what}: {names}. The measured pressure shows it; in this record it hardly moves the stem, whose error is "
+            f"{g.before:.2g} % of travel without it and {g.after:.2g} % with it (noise {g.noise_floor:.2g} %)."
+        )
     return (
         f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
         f"(noise {g.noise_floor:.2g} %){share}."

@@ -62,3 +62,44 @@ def test_a_law_goes_before_a_free_curve_that_is_hardly_better() -> None:
     assert _fewer_unknowns(findings, line, DecisionRules()) is line
     slight: Any = SimpleNamespace(none=fitted(0, 1.3), fits=(profile, line), score=lambda f: -f.mse)
     assert _fewer_unknowns(slight, profile, DecisionRules()) is profile
+
+
+@pytest.mark.parametrize(
+    ("first", "mse", "wanted"),
+    [
+        ("stiction", (53.6, 22.1), False),  # 60 % of what jumps leave is what any bystander finds
+        ("stiction", (53.6, 11.0), True),
+        ("stiction", (4.0, 1.8), True),  # next to the noise nothing is left to jumps
+        ("creep", (53.6, 22.1), True),
+    ],
+)
+def test_beside_jumps_that_no_model_follows_a_cause_has_to_explain_most(
+    first: str, mse: tuple[float, float], wanted: bool
+) -> None:
+    def one(names: tuple[str, ...], left: float) -> Any:
+        causes = [Cause(name, effect(name), effect(name).forms[0]) for name in names]
+        return SimpleNamespace(mse=left, space=SimpleNamespace(causes=causes, numbers=(), spreads=()), z=np.zeros(0))
+
+    findings: Any = SimpleNamespace(none=fitted(0, 60.0), score=lambda f: -100.0 * f.mse)
+    small, large = one((first,), mse[0]), one((first, "spring_asymmetry"), mse[1])
+    assert _worth(findings, small, large, DecisionRules(), 1.0) is wanted
+
+
+def test_a_zero_error_and_a_drift_go_before_zeros_of_each_recordings_own() -> None:
+    """... if with fewer unknowns they leave as little; and only what such zeros hide may come in."""
+
+    def one(causes: dict[str, str], unknowns: int, mse: float) -> Any:
+        some = [Cause(name, effect(name), effect(name).form(form)) for name, form in causes.items()]
+        space = SimpleNamespace(causes=some, unknowns=[None] * unknowns)
+        return SimpleNamespace(names=tuple(causes), mse=mse, space=space)
+
+    def chosen(*others: Any) -> Any:
+        findings: Any = SimpleNamespace(none=fitted(0, 626.0), fits=(zeros, *others), score=lambda f: -f.mse)
+        return _fewer_unknowns(findings, zeros, DecisionRules())
+
+    zeros = one({"lvdt_drift": "apart"}, 16, 0.988)
+    laws = one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 8, 0.989)
+    assert chosen(laws) is laws
+    assert chosen(one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 8, 1.1)) is zeros
+    assert chosen(one({"lvdt_drift": "linear", "creep": "one_tail"}, 9, 0.989)) is zeros
+    assert chosen(one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 12, 0.989)) is zeros

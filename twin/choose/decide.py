@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from twin.choose.claims import size_of
 from twin.choose.findings import Findings
-from twin.choose.reform import bent_by
+from twin.choose.reform import bent_by, lays_open
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
 
@@ -39,6 +39,7 @@ class DecisionRules:
     share: float = 0.02
     thorough: float = 0.55
     complete: float = 0.8
+    erratic: float = 0.7
     large_share: float = 0.2
     unexplained: float = 0.2
     nothing_left: float = 1.15
@@ -172,19 +173,24 @@ def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
 def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """`fit`, or the same with a plain law in place of one free curve, if what the curve does better is immaterial.
 
-    A profile through a dozen points that is a straight line is `spring_asymmetry`.
+    A profile through a dozen points that is a straight line is `spring_asymmetry`; a zero that each recording has of
+    its own and that always goes the same way is a drift beside a zero error.
     """
     slack = min(rules.plain, rules.share * (findings.none.mse - 1.0))
     near = [
         f
         for f in findings.fits
-        if len(f.names) == len(fit.names)
-        and len(f.space.unknowns) <= len(fit.space.unknowns) - _FREE
+        if len(f.space.unknowns) <= len(fit.space.unknowns) - _FREE
         and f.mse <= fit.mse + slack
-        and _effects(f) - _effects(fit)
-        and len(set(fit.names) - set(f.names)) == 1
+        and (_with_another(f, fit) or lays_open(f, fit))
     ]
     return max(near, key=findings.score) if near else fit
+
+
+def _with_another(f: Fit, fit: Fit) -> bool:
+    """Whether `f` is `fit` with another effect in the place of one cause."""
+    other = len(f.names) == len(fit.names) and len(set(fit.names) - set(f.names)) == 1
+    return other and bool(_effects(f) - _effects(fit))
 
 
 def _effects(fit: Fit) -> set[str]:
@@ -218,4 +224,7 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or tidy or spares)
     first = small is findings.none
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
+    # jumps that no model follows leave much, in which a bystander finds something
+    if any(c.effect is not None and c.effect.erratic for c in small.space.causes) and large.mse > rules.quiet * floor:
+        thorough = thorough and gain > rules.erratic * left
     return significant and material and thorough

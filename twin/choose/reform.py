@@ -24,6 +24,29 @@ def bent_by(one: Fit) -> float:
     return float(moved @ moved)
 
 
+def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
+    """A hypothesis with a law for a curve that each recording has of its own, and with one effect that this hides.
+
+    `causes`: all candidates in all forms.
+    """
+    found = []
+    for curve in one.space.causes:
+        if curve.effect is None or curve.form is None or not curve.form.apart:
+            continue
+        rest = [c for c in one.space.causes if c is not curve]
+        laws = [c for c in causes if c.name == curve.name and c.form is not None and not c.form.apart]
+        hidden = [c for c in causes if c.name in curve.effect.hides and c.name not in one.names]
+        found += [(*rest, law, other) for law in laws if law.form and not law.form.outside for other in hidden]
+    return found
+
+
+def lays_open(larger: Fit, one: Fit) -> bool:
+    """Whether `larger` has what a curve of `one`, which each recording has of its own, hides, and nothing else more."""
+    more = set(larger.names) - set(one.names)
+    hidden = {name for c in one.space.causes if c.effect and c.form and c.form.apart for name in c.effect.hides}
+    return set(one.names) < set(larger.names) and len(more) == 1 and more <= hidden
+
+
 def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
     """For the best `most` of the pairs of effects: one effect alone in one of its forms, and it with the other effect
     in every form, as far as `pairs` does not have them. `tried`: all causes alone in all forms.

@@ -16,7 +16,7 @@ from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
 from twin.choose.pairs import promising_pairs
-from twin.choose.reform import bent_by, exactly, in_other_forms
+from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
 from twin.choose.score import make_yardstick
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
@@ -46,6 +46,7 @@ class SearchRules:
     bent: float = 4.0  # or moves its design numbers by more than this (squares of their priors' deviations)
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
     enough_share: float = 0.001  # likewise, as a share of what the design leaves
+    stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
@@ -81,7 +82,7 @@ class Searcher:
                 break
             level = self._extended(level, size)
             found += level
-        found += self._neighbours(found)
+        found = _better_of_each([*found, *self._neighbours(found)])
         everything = [none, *found]
         best = min(everything, key=lambda f: f.mse)
         return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
@@ -152,15 +153,18 @@ class Searcher:
         needed only as long as another was missing, or was alone in another form.
         """
         todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
+        singles = effect_causes(self.channel, self.base)
         for one in self._likely(found)[: self.rules.beam] if found else []:
             causes = one.space.causes
             beside = [(*causes, *some) for some in suspected(one)]
             if len(causes) > 1:
                 beside += [causes[:k] + causes[k + 1 :] for k in range(len(causes))]
+            beside += in_laws(one, singles)
             todo = {exactly(some): (some, one) for some in beside} | todo  # from the likeliest that has it
-        known = {exactly(f.space.causes) for f in found}
+        known = {exactly(f.space.causes): f.mse for f in found}
+        new = [p for key, p in todo.items() if p[1].mse < self.rules.stuck * known.get(key, np.inf)]
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            return list(pool.map(lambda p: self._fit_from(*p), (p for key, p in todo.items() if key not in known)))
+            return list(pool.map(lambda p: self._fit_from(*p), new))
 
     def _fit_from(self, causes: tuple[Cause, ...], parent: Fit) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
@@ -232,3 +236,12 @@ class Searcher:
         if any(c.effect is not None for c in causes):
             return self.channel.numbers
         return tuple(c.name.removeprefix("parameter:") for c in causes)
+
+
+def _better_of_each(fits: Sequence[Fit]) -> list[Fit]:
+    """Of fits of the same hypothesis the better one, where the first of them stood."""
+    best: dict[frozenset[tuple[str, str]], Fit] = {}
+    for one in fits:
+        key = exactly(one.space.causes)
+        best[key] = min(best.get(key, one), one, key=lambda f: f.mse)
+    return list(best.values())

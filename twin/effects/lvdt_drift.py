@@ -173,4 +173,5 @@ EFFECT = Effect(
     ),
     drifts=True,
     twins=("friction_drift", "creep"),
+    hides=("lvdt_calibration",),
 )
