@@ -79,7 +79,9 @@ V_REMEMBERS = 36  # 1: what the slow tails have of what was before holds the ste
 V_PRESLIDING = 37  # distance after which all of the friction in the force balance has turned [position]
 V_INERTIA_S = 38  # time constant with which the speed of the stem follows what pulls it [s]
 V_ROUNDED = 39  # speed at which friction in the force balance has turned, as tanh(v / it) [position/s]; 0: at once
-V_COUNT = 40
+V_DAHL = 40  # distance over which friction before the lag of the stem turns, after Dahl [position]; 0: a play
+V_DAHL_HALF = 41  # the half deadband of which that is so [pressure]
+V_COUNT = 42
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -52,3 +52,13 @@ def test_any_effects_together(inserted: list[Inserted]) -> None:
 @given(several())
 def test_order_does_not_matter(inserted: list[Inserted]) -> None:
     np.testing.assert_allclose(chain(inserted)[1], chain(inserted[::-1])[1], atol=1e-9)
+
+
+def test_a_lag_of_the_stem_beside_a_filter_of_two_poles_keeps_its_own() -> None:
+    """They share a place; neither may take the other's."""
+    behind = Inserted("additional_lag", effects()["additional_lag"].form("behind_stem"), (0.9,))
+    poles = Inserted("sensor_lag", effects()["sensor_lag"].form("two_poles"), (0.4,))
+    one, other = chain([behind, poles])[1], chain([poles, behind])[1]
+    np.testing.assert_allclose(one, other, atol=1e-12)
+    assert np.abs(one - chain([behind])[1]).max() > 0.01 * DESIGN.travel
+    assert np.abs(one - chain([poles])[1]).max() > 0.01 * DESIGN.travel

@@ -15,9 +15,9 @@ from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import DecisionRules, decide
 from twin.choose.pairs import _gains, promising_pairs
-from twin.choose.reform import in_other_forms
+from twin.choose.reform import in_laws, in_other_forms
 from twin.choose.screen import make_screen
-from twin.choose.search import Searcher, SearchRules
+from twin.choose.search import Searcher, SearchRules, _better_of_each
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
@@ -174,3 +174,44 @@ def test_without_either_cause_a_pair_is_fitted_from_where_the_pair_ended() -> No
     alone = [f for f in found if f.names == ("lvdt_nonlinearity",)]
     assert len(alone) == 1 and alone[0].mse < 1.2
     assert {f.names for f in found} >= {("lvdt_nonlinearity",), ("creep",), ("friction_drift",)}
+
+
+def test_a_cause_that_had_stopped_far_from_its_best_alone_is_fitted_again_from_the_pair() -> None:
+    """... and not where the pair is hardly better: then alone it is what it is."""
+    bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
+    channel = channel_of(Plant(DESIGN, (bow,)))
+    base = Plant(DesignModel())
+    one, other = cause("lvdt_nonlinearity", "bow"), cause("creep", "one_tail")
+    searcher = Searcher(channel, base, Scales(), SearchRules(threads=1))
+
+    def ended(causes: tuple[Cause, ...], start: np.ndarray) -> Fit:
+        return fit(channel, make_space(base, causes, channel.numbers, Scales()), [start])
+
+    pair, alone = ended((one, other), np.zeros(8)), ended((one,), np.zeros(6))
+    stuck = replace(alone, mse=20.0 * alone.mse)
+    again = searcher._neighbours([pair, stuck])
+    assert [f.mse < 1.2 for f in again if f.names == ("lvdt_nonlinearity",)] == [True]
+    assert not [f for f in searcher._neighbours([pair, alone]) if f.names == ("lvdt_nonlinearity",)]
+    best = _better_of_each([pair, stuck, *again])
+    assert [f.names for f in best] == [pair.names, ("lvdt_nonlinearity",), ("creep",)]
+    assert best[1].mse < 1.2
+
+
+def test_zeros_of_each_recordings_own_are_tried_as_a_law_beside_what_they_hide() -> None:
+    base = Plant(DESIGN)
+    candidates = [
+        cause("lvdt_drift", "linear"),
+        cause("lvdt_drift", "apart"),
+        cause("lvdt_drift", "jump"),
+        cause("lvdt_calibration", "zero"),
+        cause("creep", "one_tail"),
+    ]
+
+    def laws(*causes: Cause) -> list[list[str]]:
+        space = make_space(base, causes, (), Scales())
+        one = Fit(space, np.zeros(len(space.unknowns)), 1.0, 0.0, np.zeros(1), np.zeros((1, 1)), 1)
+        return [[f"{c.name} {c.form.name}" for c in some if c.form] for some in in_laws(one, candidates)]
+
+    assert laws(candidates[4], candidates[1]) == [["creep one_tail", "lvdt_drift linear", "lvdt_calibration zero"]]
+    assert laws(candidates[0]) == []
+    assert laws(candidates[1], candidates[3]) == []

@@ -27,7 +27,7 @@ def _inertia(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _behind(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_LAG2_S] = values[0]
+    c.sensor[S_LAG2_S] += values[0]  # a filter of two poles has it, too
 
 
 EFFECT = Effect(

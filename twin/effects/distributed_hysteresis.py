@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.kernels.elastic import stretches
-from twin.slots import PLAYS, V_PRESLIDING
+from twin.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING
 
 
 def _spread(doc: str) -> tuple[Parameter]:
@@ -44,6 +45,8 @@ _PRESLIDING = Parameter(
     scale=0.04,
     doc="distance after a reversal over which all of the friction has turned",
 )
+
+_DISTANCE = replace(_PRESLIDING, name="distance", doc="distance over which friction turns, but for 1/e of it")
 
 _SHARE = Parameter(
     name="share",
@@ -97,6 +100,19 @@ def _turns(c: Coefficients, values: Sequence[float]) -> None:
     _set(c, 0.5 * (np.append(0.0, turned) - deadband), np.diff(gives, prepend=0.0))
 
 
+def _dahl(c: Coefficients, values: Sequence[float]) -> None:
+    """As it is before the force balance; in it, where there is more, as the plays that turn like it after a stroke."""
+    if values[0] <= 0.0:
+        return
+    compliance, deadband = c.design.compliance, c.design.deadband
+    c.valve[V_DAHL], c.valve[V_DAHL_HALF] = values[0], 0.5 * deadband
+    share = np.arange(PLAYS) / PLAYS
+    back = -values[0] * np.log1p(-share)
+    turned = back / compliance + deadband * share
+    gives = np.append(np.diff(back) / np.diff(turned) / compliance, 1.0)
+    _set(c, 0.5 * (turned - deadband), np.diff(gives, prepend=0.0))
+
+
 def _set(c: Coefficients, spreads: np.ndarray, weights: np.ndarray) -> None:
     """Spreads about the design's half deadband, weights that sum to 1; the mean width does not change."""
     c.spreads = np.ascontiguousarray(spreads, dtype=np.float64)
@@ -109,13 +125,16 @@ EFFECT = Effect(
     claim="The hysteresis is a spread of play widths: inner reversals move the stem gradually.",
     equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0; turns_over_a_distance: "
     "friction is the half deadband times the mean of z_j / q_j, springs z_j that x stretches and that slip at "
-    "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance",
+    "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance; "
+    "dahl: p = offset + w/k + half deadband * F, dF/dw = (1 - F sgn(dw)) / distance",
     source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996); "
-    "Iwan, J. Appl. Mech. 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005) 1883",
+    "Iwan, J. Appl. Mech. 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005) 1883; "
+    "Dahl, The Aerospace Corporation, TOR-0158(3107-18)-1 (1968)",
     forms=(
         Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
         Form("partly_soft", (_SOFT,), _partly_soft),
         Form("turns_over_a_distance", (_PRESLIDING,), _turns),
+        Form("dahl", (_DISTANCE,), _dahl),
         Form("two_plays", (_SHARE, *_spread("by how much the half widths of the two plays differ")), _two),
         Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
     ),

@@ -14,7 +14,8 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _twice(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[S_LAG_S] = c.sensor[S_LAG2_S] = 0.5 * values[0]
+    c.sensor[S_LAG_S] = 0.5 * values[0]
+    c.sensor[S_LAG2_S] += 0.5 * values[0]
 
 
 def _lag(doc: str) -> tuple[Parameter]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.coupled import coupled_start, coupled_steps
+from twin.kernels.dahl import dahl_target
 from twin.kernels.elastic import elastic_start, elastic_steps
 from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
@@ -25,6 +26,8 @@ from twin.slots import (
     V_CREEP1_TAU_S,
     V_CREEP2,
     V_CREEP2_TAU_S,
+    V_DAHL,
+    V_DAHL_HALF,
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
@@ -141,11 +144,21 @@ def _stem(
         state, elements = begin(float(force[0]), float(widening[0]), *what, (start[0], at))
         steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
-        target = play_target(force, widening, (c[V_LOW], c[V_HIGH]), tables, *plays, at)
+        target = _target(force, widening, c, tables, plays, start[1], at)
         if c[V_TARGET_CREEPS] != 0.0:
             _creep(time_s, offsets, c, held, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         move_stem(time_s, offsets, target, c, np.array([start[0], 0.0]), out)
+
+
+def _target(
+    force: FloatArray, widening: FloatArray, c: FloatArray, tables: Tables, plays: Plays, w0: float, at: float
+) -> FloatArray:
+    """What pulls the stem, from `w0`: Dahl's friction, or plays that begin `at` a place."""
+    stops = (float(c[V_LOW]), float(c[V_HIGH]))
+    if c[V_DAHL] > 0.0:
+        return dahl_target(force, widening, stops, tables, c[V_DAHL_HALF], c[V_DAHL], np.array([w0, np.nan]))
+    return play_target(force, widening, stops, tables, *plays, at)
 
 
 def move_stem(

@@ -9,6 +9,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels import valve as kernels
+from twin.kernels.dahl import dahl_target
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
@@ -18,6 +19,8 @@ from twin.slots import (
     V_CREEP1_TAU_S,
     V_CREEP2,
     V_CREEP2_TAU_S,
+    V_DAHL,
+    V_DAHL_HALF,
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
@@ -132,9 +135,20 @@ class Sliding:
         self._tails = tails
         self._after = Lag(float(v[V_TAU_AFTER_S]))
         self._c, self._moving = v, np.array([x0, 0.0])
+        self._dahl = np.array([w0, np.nan])
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
+        target = self._target(force, widening)
+        target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
+        out = np.empty(force.size)
+        kernels.move_stem(time_s, offsets, target, self._c, self._moving, out)
+        return out
+
+    def _target(self, force: FloatArray, widening: FloatArray) -> FloatArray:
+        half, distance = self._c[V_DAHL_HALF], self._c[V_DAHL]
+        if distance > 0.0:
+            return dahl_target(force, widening, self._stops, self._tables, half, distance, self._dahl)
         if not self._elements:
             first = (float(force[0]), float(widening[0]), self._stops, self._tables, *self._plays, self._w0)
             self._elements = [common_start(*first)] * len(self._shares)
@@ -143,10 +157,7 @@ class Sliding:
             one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
             self._elements[k] = float(one[-1])
             target += weight * one
-        target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
-        out = np.empty(force.size)
-        kernels.move_stem(time_s, offsets, target, self._c, self._moving, out)
-        return out
+        return target
 
 
 _WHOLE = np.ones(1)
