@@ -121,9 +121,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     progress("held-out gap", 0.0)
     result, judgement, parts = hearing.held_out(result, known.judgement, progress)
     everything = replace(everything, decisions=result.decisions)
-    measured, wandering, plainly = case.sigma_p is not None, result.decisions[-1].floor, explained_to_noise(result)
-    known_of = (measured, wandering, itself.disturbed, plainly, shown_by_pressure(result))
-    parts, judgement = upheld(parts, judgement, case.sigma_y, sensing, *known_of)
+    parts, judgement = _upheld(parts, judgement, case, result, sensing, itself.disturbed)
     known.judgement = judgement
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
@@ -141,6 +139,15 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     if judgement.verdict == "unexplained":
         diagnosis = signed(diagnosis, residual_signature(case, result, itself.loud, itself.swing))
     return Outcome(diagnosis, known.recordings, model, units, before, again, after, parts, everything, proposal.file)
+
+
+def _upheld(
+    parts: GapParts, judgement: Judgement, case: Case, result: StageResult, sensing: Sensing, disturbed: bool
+) -> tuple[GapParts, Judgement]:
+    """`upheld`, with what the result says of the channels."""
+    measured, wandering, exact = case.sigma_p is not None, result.decisions[-1].floor, explained_to_noise(result)
+    told = (measured, wandering, disturbed, exact, shown_by_pressure(result))
+    return upheld(parts, judgement, case.sigma_y, sensing, *told)
 
 
 def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Case, Case, Sensing, tuple[Inserted, ...]]:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -19,7 +17,7 @@ from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
-from twin.gap import GapParts, shown_by_pressure, upheld
+from twin.gap import GapParts, upheld
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
 from twin.verdict import FORM_ERROR, Judgement, estimates
@@ -50,40 +48,6 @@ def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, le
     assert judgement.verdict == verdict
     assert bool(judgement.causes) == (verdict == "effect")
     assert kept.after[0] == left
-
-
-@pytest.mark.parametrize(
-    ("shown", "sure", "verdict", "names"),
-    [
-        (("supply_saturation",), 0.9, "effect", ["supply_saturation"]),
-        (("supply_saturation",), 0.1, "no_gap", []),
-        ((), 0.9, "no_gap", []),
-    ],
-)
-def test_what_the_pressure_shows_is_named_though_the_stem_never_feels_it(
-    shown: tuple[str, ...], sure: float, verdict: str, names: list[str]
-) -> None:
-    """A supply that gives too little where the stem has long been at its stop; what is behind it goes."""
-    supply = Named("supply_saturation", "ep", sure, None, {})
-    both = Judgement("effects", (supply, *NAMED.causes), (), (("creep", "stiction"),))
-    judgement = upheld(parts(1.0, 1.0, 1.0), both, 1.0, NOTHING_SEEN, True, shown=shown)[1]
-    assert (judgement.verdict, [c.name for c in judgement.causes]) == (verdict, names)
-    assert judgement.confusable == ()
-
-
-def test_the_pressure_shows_what_is_accepted_for_far_more_than_its_noise() -> None:
-    def decision(name: str, level: float, explained: bool = True) -> Any:
-        none = SimpleNamespace(mse=level)
-        findings = SimpleNamespace(channel=SimpleNamespace(name=name), none=none)
-        return SimpleNamespace(findings=findings, explained=explained, floor=1.0, names=("ep_deadband",))
-
-    def shown(*decisions: Any) -> tuple[str, ...]:
-        return shown_by_pressure(SimpleNamespace(decisions=decisions))  # type: ignore[arg-type]
-
-    assert shown(decision("pressure", 9.0), decision("position", 90.0)) == ("ep_deadband",)
-    assert shown(decision("pressure", 4.0)) == ()
-    assert shown(decision("pressure", 9.0, explained=False)) == ()
-    assert shown(decision("chain", 9.0)) == ()
 
 
 @pytest.mark.parametrize(("apart", "verdict"), [(True, "effect"), (False, "unexplained")])

@@ -1,0 +1,67 @@
+"""What only the measured pressure shows is named, though the stem never feels it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from twin.diagnosis import Cause as Named
+from twin.diagnosis import Diagnosis, Gap, Share
+from twin.gap import GapParts, shown_by_pressure, upheld
+from twin.sensing import Sensing
+from twin.statement import statement
+from twin.verdict import Judgement
+
+CREEP = Named("creep", "actuator", 0.9, None, {})
+NOTHING_SEEN = Sensing((), {}, 0.0)
+
+
+def parts(level: float) -> GapParts:
+    return GapParts(*(np.full(8, level) for _ in range(3)), {}, {})
+
+
+@pytest.mark.parametrize(
+    ("shown", "sure", "verdict", "names"),
+    [
+        (("supply_saturation",), 0.9, "effect", ["supply_saturation"]),
+        (("supply_saturation",), 0.1, "no_gap", []),
+        ((), 0.9, "no_gap", []),
+    ],
+)
+def test_what_the_pressure_shows_is_named_though_the_stem_never_feels_it(
+    shown: tuple[str, ...], sure: float, verdict: str, names: list[str]
+) -> None:
+    """A supply that gives too little where the stem has long been at its stop; what is behind it goes."""
+    supply = Named("supply_saturation", "ep", sure, None, {})
+    both = Judgement("effects", (supply, CREEP), (), (("creep", "stiction"),))
+    judgement = upheld(parts(1.0), both, 1.0, NOTHING_SEEN, True, shown=shown)[1]
+    assert (judgement.verdict, [c.name for c in judgement.causes]) == (verdict, names)
+    assert judgement.confusable == ()
+
+
+def test_the_pressure_shows_what_is_accepted_for_far_more_than_its_noise() -> None:
+    def decision(name: str, level: float, explained: bool = True) -> Any:
+        none = SimpleNamespace(mse=level)
+        findings = SimpleNamespace(channel=SimpleNamespace(name=name), none=none)
+        return SimpleNamespace(findings=findings, explained=explained, floor=1.0, names=("ep_deadband",))
+
+    def shown(*decisions: Any) -> tuple[str, ...]:
+        return shown_by_pressure(SimpleNamespace(decisions=decisions))  # type: ignore[arg-type]
+
+    assert shown(decision("pressure", 9.0), decision("position", 90.0)) == ("ep_deadband",)
+    assert shown(decision("pressure", 4.0)) == ()
+    assert shown(decision("pressure", 9.0, explained=False)) == ()
+    assert shown(decision("chain", 9.0)) == ()
+
+
+@pytest.mark.parametrize(
+    ("stage", "closed", "said"),
+    [("ep", None, True), ("actuator", None, False), ("ep", Share(0.9, (0.8, 0.95)), False)],
+)
+def test_the_sentence_says_where_it_shows(stage: Any, closed: Share | None, said: bool) -> None:
+    gap = Gap(0.067, 0.067, 0.066, 0.067, closed)
+    found = Diagnosis("effect", "", (Named("supply_saturation", stage, 0.9, None, {}),), (), gap)
+    assert ("The measured pressure shows it" in statement(found)) is said
