@@ -105,3 +105,13 @@ def test_zeros_that_wander_in_each_recording_by_itself_are_a_drift() -> None:
 def test_zeros_that_differ_between_recordings_are_a_drift() -> None:
     outcome = diagnose(recordings([0.0, 0.004, 0.004, -0.003]), DesignModel())
     assert [c.name for c in outcome.diagnosis.causes] == ["lvdt_drift"]
+
+
+def test_a_drift_that_begins_anew_beside_a_zero_error_is_both() -> None:
+    """Zeros of each recording's own would say it too, with more unknowns; either cause is needed for unseen rows."""
+    found = recordings([0.004, 0.004, 0.004])
+    drifting = [replace(r, position=r.position + 4e-5 * (r.time_s - r.time_s[0])) for r in found]
+    outcome = diagnose(drifting, DesignModel())
+    causes = {c.name: c.heldout_gap_without for c in outcome.diagnosis.causes}
+    assert set(causes) == {"lvdt_drift", "lvdt_calibration"}
+    assert all(gap is not None and gap > 1.5 * outcome.diagnosis.gap.after for gap in causes.values())

@@ -69,7 +69,7 @@ def test_a_law_goes_before_a_free_curve_that_is_hardly_better() -> None:
     [
         ("stiction", (53.6, 22.1), False),  # 60 % of what jumps leave is what any bystander finds
         ("stiction", (53.6, 11.0), True),
-        ("stiction", (4.0, 1.8), True),  # next to the noise nothing is left to jumps
+        ("stiction", (4.0, 1.95), True),  # next to the noise nothing is left to jumps
         ("creep", (53.6, 22.1), True),
     ],
 )

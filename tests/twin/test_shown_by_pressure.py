@@ -42,6 +42,15 @@ def test_what_the_pressure_shows_is_named_though_the_stem_never_feels_it(
     assert judgement.confusable == ()
 
 
+def test_it_is_named_beside_what_the_readings_showed_too() -> None:
+    seen = Sensing((), {"sensor_quantization": {}}, 0.06)
+    supply = Named("supply_saturation", "ep", 0.9, None, {})
+    coarse = Named("sensor_quantization", "sensor", 0.97, None, {})
+    every = Judgement("effects", (supply, coarse, CREEP), (), ())
+    for shown, names in ((("supply_saturation",), (supply, coarse)), ((), (coarse,))):
+        assert upheld(parts(0.9), every, 1.0, seen, True, shown=shown)[1].causes == names
+
+
 def test_the_pressure_shows_what_is_accepted_for_far_more_than_its_noise() -> None:
     def decision(name: str, level: float, explained: bool = True) -> Any:
         none = SimpleNamespace(mse=level)
