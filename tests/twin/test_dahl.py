@@ -82,6 +82,15 @@ def test_at_a_stop_it_rests_and_comes_off_it_by_the_other_curve() -> None:
     assert back[middle] == pytest.approx(DESIGN.compliance * (force[300:][middle] - DESIGN.a2), abs=2e-3)
 
 
+def test_from_where_it_was_vented_it_comes_off_the_stop_by_and_by() -> None:
+    """Friction still points the other way: offset + w/k + half (1 - 2 e^(-w/d)) = p from the opening curve on."""
+    distance = 0.03
+    for pressure in (6.5, 8.0, 8.7):
+        w = float(target(np.array([4.0, pressure]), distance, 0.0)[-1])
+        turned = 1.0 - 2.0 * np.exp(-w / distance)
+        assert DESIGN.offset + w / DESIGN.compliance + HALF * turned == pytest.approx(pressure, abs=1e-5)
+
+
 def test_over_no_distance_it_is_a_play() -> None:
     force = 9.0 + 4.0 * np.sin(np.linspace(0.0, 20.0, 2000)) * np.linspace(1.0, 0.4, 2000)
     c = Plant(DESIGN).coefficients(1.0)
