@@ -105,6 +105,9 @@ def test_unexplained_without_pressure_and_with_missing_values(shown: Series) -> 
     assert "without measured pressure the stages cannot be told apart" in page
     assert "time since reversal" in page
     assert "command [psi]" in page
+    measured = render(unclear, replace(blind, pressure=shown.pressure))
+    assert "without measured pressure the stages" not in measured
+    assert "No error above the floor to share out" in measured
 
 
 def test_bars_show_masking_and_columns_their_scale() -> None:

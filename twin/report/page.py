@@ -65,6 +65,7 @@ def _where(diagnosis: Diagnosis, series: Series) -> dict[str, object]:
     return {
         "chain": _chain(diagnosis),
         "stage": share_bars(where.stage),
+        "measured": series.pressure is not None,
         "attributed": share_bars(where.attributed),
         "direction": share_bars(where.direction),
         "regime": share_bars(where.regime),
