@@ -67,7 +67,7 @@ def test_beside_a_cause_that_explains_without_it_a_rival_is_not_heard() -> None:
 
 def test_no_rival_is_in_an_updated_model() -> None:
     rivals = {(e.name, f.name) for e in effects().values() for f in e.forms if f.outside}
-    assert rivals == {("lvdt_drift", "jump"), ("dead_time", "rings")}
+    assert rivals == {("lvdt_drift", "jump"), ("lvdt_drift", "jump_each"), ("dead_time", "rings")}
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))
     assert not answered(record).model.effects
 
@@ -89,6 +89,19 @@ def test_a_jump_happens_once_in_all_recordings() -> None:
     assert third[S_ZERO] == 0.02 and third[S_JUMP] == 0.0
     shared = replace(at[2], since_s=400.0, span_s=500.0)
     assert plant.coefficients(100.0, shared).course_s == (400.0, 500.0)
+
+
+def test_a_zero_that_jumps_in_each_recording_is_no_drift() -> None:
+    """After 30 s in one and in the other; in a part of a recording that began before, sooner."""
+    plant = with_form("lvdt_drift", "jump_each", 0.02, 30.0)
+    whole, part = (plant.coefficients(100.0, p).sensor for p in (Place(1, 3), Place(1, 3, within_s=20.0)))
+    assert (whole[S_JUMP], whole[S_JUMP_S], part[S_JUMP_S]) == (0.02, 30.0, 10.0)
+    past = plant.coefficients(100.0, Place(1, 3, within_s=40.0)).sensor
+    assert (past[S_JUMP], past[S_ZERO]) == (0.0, 0.02)
+    records = [replace(a_record(plant), name=name) for name in ("first", "second")]
+    found = answered(records[0], replace(records[1], position=records[1].position + 2e-4)).diagnosis
+    assert found.verdict == "unexplained" and not found.causes
+    assert "the zero of the reading jumps each time" in found.statement
 
 
 def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:

@@ -31,7 +31,7 @@ def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
     """
     found = []
     for curve in one.space.causes:
-        if curve.effect is None or curve.form is None or not curve.form.apart:
+        if curve.effect is None or curve.form is None or not curve.form.apart or curve.form.outside:
             continue
         rest = [c for c in one.space.causes if c is not curve]
         laws = [c for c in causes if c.name == curve.name and c.form is not None and not c.form.apart]

@@ -100,6 +100,19 @@ _WHEN = Parameter(
 )
 
 
+_AFTER = replace(
+    _WHEN,
+    name="after",
+    kind="time",
+    lower=2.0,
+    upper=5000.0,
+    starts=(20.0, 35.0, 50.0, 70.0, 90.0, 120.0, 150.0, 190.0, 240.0, 300.0, 380.0, 480.0, 600.0, 800.0),
+    scale=100.0,
+    doc="when it jumps in each recording",
+    neutral=100.0,
+)
+
+
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_DRIFT_RATE] = values[0]
     c.sensor[S_ZERO] += values[0] * c.since_s
@@ -148,11 +161,18 @@ def _wander(c: Coefficients, values: Sequence[float]) -> None:
 
 def _jump(c: Coefficients, values: Sequence[float]) -> None:
     before_s, all_s = c.course_s
-    at_s = values[1] * all_s - before_s
+    _step(c, values[0], values[1] * all_s - before_s)
+
+
+def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
+    _step(c, values[0], values[1] - (c.place.within_s if c.place is not None else 0.0))
+
+
+def _step(c: Coefficients, zero: float, at_s: float) -> None:
     if at_s <= 0.0:
-        c.sensor[S_ZERO] += values[0]
+        c.sensor[S_ZERO] += zero
     else:
-        c.sensor[[S_JUMP, S_JUMP_S]] = values[0], at_s
+        c.sensor[[S_JUMP, S_JUMP_S]] = zero, at_s
 
 
 EFFECT = Effect(
@@ -170,6 +190,7 @@ EFFECT = Effect(
         Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),
         Form("jump", (_STEP, _WHEN), _jump, outside="the zero of the reading jumps"),
+        Form("jump_each", (_STEP, _AFTER), _jump_each, apart=KNOTS, outside="the zero of the reading jumps each time"),
     ),
     drifts=True,
     twins=("friction_drift", "creep"),
