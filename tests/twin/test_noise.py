@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from logs.recording import Recording
 from tests.twin.toy_valve import Toy, record, staircase
-from twin.noise.model import _louder, estimate_noise, poisson_tail
+from twin.noise.model import estimate_noise, poisson_tail
 from twin.noise.repeats import _longest, find_repeats
 from twin.noise.robust import autocorrelation, autoregression, correlation_samples, robust_sigma
 from twin.noise.still import even_windows, fast_memory, given_back, still_pieces
@@ -182,20 +182,3 @@ def test_scale_and_memory_of_known_samples() -> None:
     assert poisson_tail(0, 0.1) == 1.0
     assert poisson_tail(1, 0.1) == pytest.approx(1 - np.exp(-0.1))
     assert poisson_tail(50, 1.0) < 1e-30
-
-
-@pytest.mark.parametrize(
-    ("repeats", "still", "fast", "louder"),
-    [
-        (2.7, 0.57, 0.84, True),  # some of the fastest changes are motion
-        (2.2, 0.57, 0.5, False),
-        (2.4, 0.57, 0.84, False),  # ... and some are not
-        (9.0, 0.1, 4.0, False),  # a coarse reading rests on its steps
-    ],
-)
-def test_repeats_far_louder_than_a_reading_at_rest_are_no_noise(
-    repeats: float, still: float, fast: float, louder: bool
-) -> None:
-    assert _louder({"repeats": repeats, "still": still, "high_frequency": fast}) is louder
-    assert _louder({"repeats": repeats, "straight": still, "high_frequency": fast}) is louder
-    assert not _louder({"repeats": repeats, "high_frequency": fast})

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.slots import (
     KNOTS,
     S_CYCLE_COS,
@@ -106,7 +106,7 @@ _AFTER = replace(
     kind="time",
     lower=2.0,
     upper=5000.0,
-    starts=(20.0, 35.0, 50.0, 70.0, 90.0, 120.0, 150.0, 190.0, 240.0, 300.0, 380.0, 480.0, 600.0, 800.0),
+    starts=(20.0, 40.0, 80.0),
     scale=100.0,
     doc="when it jumps in each recording",
     neutral=100.0,
@@ -168,6 +168,12 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
     _step(c, values[0], values[1] - (c.place.within_s if c.place is not None else 0.0))
 
 
+def _instants(time_s: FloatArray, _reading: FloatArray, scales: Scales) -> list[tuple[float, ...]]:
+    """All along the recording, up and down."""
+    size, whole_s = 0.005 * scales.position, float(time_s[-1] - time_s[0])
+    return [(zero, (0.5 + k) / 16.0 * whole_s) for k in range(16) for zero in (size, -size)]
+
+
 def _step(c: Coefficients, zero: float, at_s: float) -> None:
     if at_s <= 0.0:
         c.sensor[S_ZERO] += zero
@@ -190,7 +196,14 @@ EFFECT = Effect(
         Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),
         Form("jump", (_STEP, _WHEN), _jump, outside="the zero of the reading jumps"),
-        Form("jump_each", (_STEP, _AFTER), _jump_each, apart=KNOTS, outside="the zero of the reading jumps each time"),
+        Form(
+            "jump_each",
+            (_STEP, _AFTER),
+            _jump_each,
+            _instants,
+            apart=KNOTS,
+            outside="the zero of the reading jumps each time",
+        ),
     ),
     drifts=True,
     twins=("friction_drift", "creep"),

@@ -27,7 +27,6 @@ Source = Literal["repeats", "still", "straight", "high_frequency", "none"]
 
 _TAIL = 4.5  # sigmas; a Gaussian reading passes it once in 150,000
 LOUD = 4.0  # times the resting noise: a difference of repeats beyond it has a cause
-_SEEN = 3.0  # times what the fastest changes say of the noise: likewise
 _LEAST = 200  # samples before a source is trusted
 
 
@@ -126,10 +125,7 @@ def _louder(by_source: Mapping[str, float]) -> bool:
     A deadband that grows, a disturbance that comes once: as a floor it would hide its own cause.
     """
     resting = by_source.get("still", by_source.get("straight"))
-    if resting is None:
-        return False
-    # fast changes are some of them motion: where the reading rests is the better witness, unless it rests on its steps
-    return by_source.get("repeats", 0.0) > max(LOUD * resting, _SEEN * by_source["high_frequency"])
+    return resting is not None and by_source.get("repeats", 0.0) > LOUD * max(resting, by_source["high_frequency"])
 
 
 def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "any", "straight"]) -> list[FloatArray]:
