@@ -96,6 +96,10 @@ def settled(recording: Recording, hold_s: float, values: FloatArray) -> tuple[Fl
 
 
 def typical(values: Mapping[int, float]) -> int:
-    """The key whose value is nearest the median: the record to show, neither the best nor the worst."""
+    """The key whose value is nearest the median: the record to show, neither the best nor the worst.
+
+    Of an even number two are equally near; which one must not hang on the last bits of a machine: the lower key.
+    """
     middle = float(np.median(list(values.values())))
-    return min(values, key=lambda key: abs(values[key] - middle))
+    tie = 1e-9 * max(abs(middle), 1e-300)
+    return min(values, key=lambda key: (round(abs(values[key] - middle) / tie), key))
