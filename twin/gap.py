@@ -22,7 +22,7 @@ from twin.fit.space import make_space
 from twin.heldout import predict_heldout
 from twin.sensing import Sensing
 from twin.stages import StageResult
-from twin.verdict import Judgement
+from twin.verdict import Judgement, verdict_of
 
 Progress = Callable[[str, float], None]
 
@@ -188,9 +188,7 @@ def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:
     """The judgement with those causes only that stand in `names`: there is no error for any other."""
     causes = tuple(c for c in judgement.causes if c.name in names)
     sets = tuple(s for s in judgement.confusable if s[0] in names)
-    effects = sum(not c.name.startswith("parameter:") for c in causes)
-    verdict: Verdict = "parameter" if not effects else "effect" if effects == 1 else "effects"
-    return replace(judgement, verdict=verdict, causes=causes, confusable=sets)
+    return replace(judgement, verdict=verdict_of(causes), causes=causes, confusable=sets)
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
@@ -221,7 +219,7 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
         if name not in decision.names:
             fits[decision] = decision.accepted
         elif kept and (name.startswith("parameter:") or not smaller):
-            fits[decision] = _as_designed(decision, name, case)
+            fits[decision] = _without(decision, name, case)
         elif kept:
             fits[decision] = min(smaller, key=lambda f: f.mse)
         elif not kept:
@@ -229,7 +227,7 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
     return _predicted(case, fits)
 
 
-def _as_designed(decision: Decision, name: str, case: Case) -> Fit:
+def _without(decision: Decision, name: str, case: Case) -> Fit:
     """The accepted causes less one of them; an accused number may not ride along either."""
     accepted = decision.accepted
     causes = [c for c in accepted.space.causes if c.name != name]

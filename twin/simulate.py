@@ -127,31 +127,21 @@ def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
     off, too, all along; but so does the design's.
     """
     head, cut = _head(plant, recording, grid)
-    before = _off_target(plant, head, cut)
-    return abs(before) > _OFF * plant.design.travel and _late(plant, head, cut) / before > _STAYS
-
-
-def _off_target(plant: Plant, head: Recording, grid: TimeGrid) -> float:
-    """How far the first reading is from where the design's play would let it rest [position]."""
-    d, pressure = plant.design, _head_pressure(plant, head, grid)[grid.offsets]
+    c, start = plant.coefficients(head.duration_s), float(_seen(head.pressure, float(head.command[0]))[0])
+    pressure = pressure_response(c, cut, head.command, start)
     reading = _median(head.position[:_FIRST_ROWS])
-    curves = np.array([d.a1, d.a2])
-    low, high = np.clip(d.compliance * (np.median(pressure[:_FIRST_ROWS]) - curves), 0.0, d.travel)
-    return reading - float(np.clip(reading, low, high))
+    before = reading - _rest_of(plant.design, reading, float(np.median(pressure[cut.offsets[:_FIRST_ROWS]])))
+    if not abs(before) > _OFF * plant.design.travel:
+        return False
+    at = stem_at(c, reading)
+    later = reading_response(c, cut, stem_response(c, cut, pressure, at, at))
+    return _median((head.position - later)[-_FIRST_ROWS:]) / before > _STAYS
 
 
-def _late(plant: Plant, head: Recording, grid: TimeGrid) -> float:
-    """How far the last reading is from where the design would have it by then, had it been at rest [position]."""
-    c = plant.coefficients(head.duration_s)
-    at = stem_at(c, _median(head.position[:_FIRST_ROWS]))
-    stem = stem_response(c, grid, _head_pressure(plant, head, grid), at, at)
-    return _median((head.position - reading_response(c, grid, stem))[-_FIRST_ROWS:])
-
-
-def _head_pressure(plant: Plant, head: Recording, grid: TimeGrid) -> FloatArray:
-    """What the design makes of the commands, from the first pressure reading on, on the fine grid."""
-    start = float(_seen(head.pressure, float(head.command[0]))[0])
-    return pressure_response(plant.coefficients(head.duration_s), grid, head.command, start)
+def _rest_of(d: DesignModel, reading: float, pressure: float) -> float:
+    """Where the design's play would let a stem rest that is read at `reading`, at this pressure."""
+    low, high = np.clip(d.compliance * (pressure - np.array([d.a1, d.a2])), 0.0, d.travel)
+    return float(np.clip(reading, low, high))
 
 
 def _median(values: FloatArray) -> float:

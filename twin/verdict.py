@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,11 +54,15 @@ def pronounce(
     ranking = _ranking(weighed, sensing)
     if _unexplained(result, ep_share, sensing) or any(outside_of(d) for d in result.decisions):
         return Judgement("unexplained", (), ranking, ())
-    effects = [c for c in causes if not c.name.startswith("parameter:")]
     if not causes:
         return Judgement("unexplained" if disturbed else "no_gap", (), ranking, ())
-    verdict: Verdict = "parameter" if not effects else "effect" if len(effects) == 1 else "effects"
-    return Judgement(verdict, causes, ranking, sets)
+    return Judgement(verdict_of(causes), causes, ranking, sets)
+
+
+def verdict_of(causes: Sequence[Cause]) -> Verdict:
+    """What the named causes, of which there is one at least, make the verdict."""
+    effects = sum(not c.name.startswith("parameter:") for c in causes)
+    return "parameter" if not effects else "effect" if effects == 1 else "effects"
 
 
 def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool:

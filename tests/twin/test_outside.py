@@ -13,17 +13,20 @@ from scipy.signal import lti, step
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
+from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import Decision, DecisionRules
 from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.effect import Scales
-from twin.fit.fitting import Fit
+from twin.fit.channel import position_channel
+from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response
 from twin.slots import S_JUMP, S_JUMP_S, S_ZERO
+from twin.stages import driven_about
 from twin.timegrid import make_grid
 
 DESIGN = DesignModel()
@@ -102,6 +105,20 @@ def test_a_zero_that_jumps_in_each_recording_is_no_drift() -> None:
     found = answered(records[0], replace(records[1], position=records[1].position + 2e-4)).diagnosis
     assert found.verdict == "unexplained" and not found.causes
     assert "the zero of the reading jumps each time" in found.statement
+
+
+@pytest.mark.parametrize("at_s", [40.0, 95.0, 207.0, 410.0])
+def test_a_jump_in_each_recording_is_found_wherever_it_is(at_s: float) -> None:
+    """Too far from every start it would leave so much that a drift explained it better."""
+    drift = effect("lvdt_drift")
+    plant = with_form("lvdt_drift", "jump_each", 0.015, at_s)
+    case = make_case([a_record(plant, seed=seed) for seed in (1, 2)], DESIGN, ())
+    channel = position_channel(driven_about(case.base, case), case.sigma_y)
+    cause = Cause(drift.name, drift, drift.form("jump_each"))
+    space = make_space(case.base, (cause,), channel.numbers, case.scales)
+    found = fit(channel, space, starts_of(space, [], case.recordings[0]), rounds=6)
+    assert found.values()[-1] == pytest.approx(at_s, abs=1.0)
+    assert found.mse < 5.0
 
 
 def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:

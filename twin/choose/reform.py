@@ -30,21 +30,24 @@ def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
     `causes`: all candidates in all forms.
     """
     found = []
-    for curve in one.space.causes:
-        if curve.effect is None or curve.form is None or not curve.form.apart or curve.form.outside:
-            continue
+    for curve, hides in _hiding(one.space.causes):
         rest = [c for c in one.space.causes if c is not curve]
-        laws = [c for c in causes if c.name == curve.name and c.form is not None and not c.form.apart]
-        hidden = [c for c in causes if c.name in curve.effect.hides and c.name not in one.names]
-        found += [(*rest, law, other) for law in laws if law.form and not law.form.outside for other in hidden]
+        laws = [c for c in causes if c.name == curve.name and c.form and not (c.form.apart or c.form.outside)]
+        hidden = [c for c in causes if c.name in hides and c.name not in one.names]
+        found += [(*rest, law, other) for law in laws for other in hidden]
     return found
 
 
 def lays_open(larger: Fit, one: Fit) -> bool:
     """Whether `larger` has what a curve of `one`, which each recording has of its own, hides, and nothing else more."""
     more = set(larger.names) - set(one.names)
-    hidden = {name for c in one.space.causes if c.effect and c.form and c.form.apart for name in c.effect.hides}
+    hidden = {name for _, hides in _hiding(one.space.causes) for name in hides}
     return set(one.names) < set(larger.names) and len(more) == 1 and more <= hidden
+
+
+def _hiding(causes: Sequence[Cause]) -> list[tuple[Cause, tuple[str, ...]]]:
+    """Those of the causes that each recording has of its own, with the effects that they hide."""
+    return [(c, c.effect.hides) for c in causes if c.effect and c.form and c.form.apart and not c.form.outside]
 
 
 def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:

@@ -150,16 +150,16 @@ class Searcher:
         """What stands beside the likeliest hypotheses and was not fitted on the way up.
 
         With the numbers accused that they had to move far; and without each one of the causes, which may have been
-        needed only as long as another was missing, or was alone in another form.
+        needed only as long as another was missing, was alone in another form, or had stopped far from its best alone.
         """
         todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
-        singles = effect_causes(self.channel, self.base)
+        effects = effect_causes(self.channel, self.base)
         for one in self._likely(found)[: self.rules.beam] if found else []:
             causes = one.space.causes
             beside = [(*causes, *some) for some in suspected(one)]
             if len(causes) > 1:
                 beside += [causes[:k] + causes[k + 1 :] for k in range(len(causes))]
-            beside += in_laws(one, singles)
+            beside += in_laws(one, effects)
             todo = {exactly(some): (some, one) for some in beside} | todo  # from the likeliest that has it
         known = {exactly(f.space.causes): f.mse for f in found}
         new = [p for key, p in todo.items() if p[1].mse < self.rules.stuck * known.get(key, np.inf)]

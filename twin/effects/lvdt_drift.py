@@ -100,17 +100,19 @@ _WHEN = Parameter(
 )
 
 
+# from 0 on, so that it is looked for in shares of itself
 _AFTER = replace(
-    _WHEN,
+    _SETTLING,
     name="after",
-    kind="time",
-    lower=2.0,
-    upper=5000.0,
+    lower=0.0,
     starts=(20.0, 40.0, 80.0),
     scale=100.0,
     doc="when it jumps in each recording",
-    neutral=100.0,
+    neutral=0.0,
+    smooth=False,
 )
+#: Instants of a recording at which the jump is looked for: a start too far off finds no way to it.
+_LOOKS = 48
 
 
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
@@ -171,7 +173,7 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
 def _instants(time_s: FloatArray, _reading: FloatArray, scales: Scales) -> list[tuple[float, ...]]:
     """All along the recording, up and down."""
     size, whole_s = 0.005 * scales.position, float(time_s[-1] - time_s[0])
-    return [(zero, (0.5 + k) / 16.0 * whole_s) for k in range(16) for zero in (size, -size)]
+    return [(zero, (0.5 + k) / _LOOKS * whole_s) for k in range(_LOOKS) for zero in (size, -size)]
 
 
 def _step(c: Coefficients, zero: float, at_s: float) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -39,14 +40,8 @@ def _knot(at: float) -> Parameter:
 
 
 #: A burr cuts one way only; one that helps is none.
-_BURR = Parameter(
-    name="height",
-    kind="pressure",
-    lower=0.0,
-    upper=2.5,
-    starts=(0.04, 0.25, 0.8),
-    scale=0.3,
-    doc="extra pressure at the centre, needed in one direction only",
+_BURR = replace(
+    _height("extra pressure at the centre, needed in one direction only"), lower=0.0, starts=(0.04, 0.25, 0.8)
 )
 
 #: Points of the travel at which the profile is free: four pieces for each of three waves along the stroke.
