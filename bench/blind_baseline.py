@@ -1,7 +1,8 @@
 """The model of the healthy reference valve that its blind trials are held against: `python bench/blind_baseline.py`.
 
-It plays the test sequence to a healthy valve, fits the design's numbers stage by stage with the friction in motion,
-writes `app/blind/baselines/reference.toml`, and measures what this model leaves on seeds that it has not seen: "nothing
+It plays the test sequence to a healthy valve, fits the design's numbers stage by stage with what its records show (a
+booster behind the converter's pilot, friction in motion, a filtered reading), writes
+`app/blind/baselines/reference.toml`, and measures what this model leaves on seeds that it has not seen: "nothing
 is wrong" in a blind trial means nothing beyond that margin (`reference_margin.toml`). Run it anew whenever the physics
 of the reference plant change.
 """
@@ -34,7 +35,7 @@ FAMILY = "reference"
 SEED, FRESH = 101, (102, 103, 104)
 #: How often design and friction are fitted in turn about the other, and how far numbers may move each time.
 ROUNDS, DOUBT = 3, 0.1
-COMMENT = "The healthy reference valve as a design model, friction in motion; made by bench/blind_baseline.py."
+COMMENT = "The healthy reference valve: booster, friction in motion, filtered reading; by bench/blind_baseline.py."
 MARGIN = """# RMS by which the healthy reference valve departs from reference.toml, on seeds that the fit has not seen
 # and without noise; made by bench/blind_baseline.py. A blind trial finds "no gap" when nothing stands out beyond this.
 pressure_psi = {pressure}
@@ -50,18 +51,23 @@ def healthy(seed: int, noise: float = 1.0) -> Recording:
 
 
 def fitted(recording: Recording) -> DesignModel:
-    """Identified, then refined with the friction in motion: the converter by its pressure, the valve behind it."""
+    """Identified, then refined: the converter and its booster by the pressure, the valve behind it by the position."""
     design = identify([recording]).design
-    friction = effect("friction_in_motion")
-    cause = Cause(friction.name, friction, friction.form("elastic"))
+    booster, friction = _cause("ep_rate_limit", "orifices"), _cause("friction_in_motion", "elastic")
+    filtered = _cause("sensor_lag", "first_order")
     for _ in range(ROUNDS):
         case = make_case([recording], design, ())
         assert case.sigma_p is not None
-        found = _fit(case, pressure_channel(case.trials, case.sigma_p), ())
-        stem = _fit(case, position_channel(driven_about(found.plant, case), case.sigma_y), (cause,))
+        found = _fit(case, pressure_channel(case.trials, case.sigma_p), (booster,))
+        stem = _fit(case, position_channel(driven_about(found.plant, case), case.sigma_y), (friction, filtered))
         plant = combined(case.base, [found, stem])
         design = plant.design
     return replace(design, effects=effect_tables(plant.inserted))
+
+
+def _cause(name: str, form: str) -> Cause:
+    one = effect(name)
+    return Cause(name, one, one.form(form))
 
 
 def _fit(case: Case, channel: Channel, causes: Sequence[Cause]) -> Fit:

@@ -36,7 +36,8 @@ EP_AMBIENT = 20  # what a reading is at the atmosphere's [pressure]
 EP_SLEW = 21  # highest slope of what the converter aims at [pressure/s]; FOREVER: it follows the command
 EP_RINGS_S = 22  # of a converter that swings to its goal: 1 / its natural frequency [s]; 0: it does not
 EP_DAMPING = 23  # and its damping ratio, below 1
-EP_COUNT = 24
+EP_NOMINAL = 24  # supply with which EP_FULL_UP is the slope [pressure]
+EP_COUNT = 25
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -81,7 +82,11 @@ V_INERTIA_S = 38  # time constant with which the speed of the stem follows what 
 V_ROUNDED = 39  # speed at which friction in the force balance has turned, as tanh(v / it) [position/s]; 0: at once
 V_DAHL = 40  # distance over which friction before the lag of the stem turns, after Dahl [position]; 0: a play
 V_DAHL_HALF = 41  # the half deadband of which that is so [pressure]
-V_COUNT = 42
+V_DRAG_CLOSE_S = 42  # what drag adds to the lag of a stem that closes, as long as no stop limits its pull [s]
+V_DRAG_OPEN_S = 43  # and of one that opens
+V_RELAX = 44  # pressure for each distance of the stem that a spring at first takes and then lets go [pressure/position]
+V_RELAX_TAU_S = 45
+V_COUNT = 46
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -142,7 +147,7 @@ def neutral_valve() -> FloatArray:
     """Valve coefficients without any effect; curves, lags, rates and stops are set by the design."""
     c = np.zeros(V_COUNT)
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
-    c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_STRIBECK_SPEED]] = 1.0
+    c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
     c[V_TRAVEL] = 1.0
     return c

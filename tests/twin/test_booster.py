@@ -47,8 +47,9 @@ def pressure(one: Plant, stem: FloatArray | None = STEM, step_s: float = 0.02) -
     return pressure_response(one.coefficients(80.0), grid, COMMAND, 6.0, fine)[grid.offsets]
 
 
-def stepped(up_s: float, down_s: float, air: float, per: int = 300) -> FloatArray:
-    """The same by explicit steps of a third of a millisecond, from the balance of air."""
+def stepped(up_s: float, down_s: float, air: float, supply: float = np.inf, per: int = 300) -> FloatArray:
+    """The same by explicit steps of a third of a millisecond, from the balance of air; `supply`: over 20.3 psi, choked
+    all the way."""
     p, v, rows, ambient = 6.0, 6.0, [6.0], 14.696
     for i, ((x0, x1), u) in enumerate(zip(pairwise(STEM), COMMAND[1:], strict=True)):
         h = (TIME_S[i + 1] - TIME_S[i]) / per
@@ -56,9 +57,10 @@ def stepped(up_s: float, down_s: float, air: float, per: int = 300) -> FloatArra
         for k in range(per):
             v += h * (u - v) / D.ep_tau_s
             opening = min(max((v - p) / WIDE, -1.0), 1.0)
-            flow = opening / up_s if opening > 0 else opening / down_s * _out(p) / _out(D.offset)
+            flow = opening / up_s * _in(p, supply) if opening > 0 else opening / down_s * _out(p) / _out(D.offset)
             x = x0 + (k + 0.5) * h * speed
             p += h * (flow - air / D.travel * (p + ambient) * speed) / (1.0 + air / D.travel * x)
+            p = min(p, supply)  # what a stem that opens presses together beyond it flows back
         rows.append(p)
     return np.array(rows)
 
@@ -67,6 +69,24 @@ def _out(p: float) -> float:
     """ISO 6358-1 with a critical ratio of a half: elliptic below it."""
     ratio = 14.696 / (p + 14.696)
     return (p + 14.696) * np.sqrt(1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2) if p > 0 else 0.0
+
+
+def _in(p: float, supply: float) -> float:
+    """The same from a supply, over what a usual one of 1.38 atmospheres gives while it is choked."""
+    if not np.isfinite(supply):
+        return 1.0
+    ratio = (p + 14.696) / (supply + 14.696)
+    choked = (supply + 14.696) / (1.38 * 14.696 + 14.696)
+    return choked * np.sqrt(max(0.0, 1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2)) if ratio < 1.0 else 0.0
+
+
+@pytest.mark.parametrize("values", [(0.05, 0.08, 1.5), (0.3, 0.2, 0.6)])
+@pytest.mark.parametrize("supply", [9.5, 12.0])
+def test_a_weak_supply_fills_more_and_more_slowly(values: tuple[float, float, float], supply: float) -> None:
+    booster = plant(*values)
+    weak = Inserted("supply_saturation", effect("supply_saturation").form("cut_off"), (supply,))
+    found = pressure(replace(booster, inserted=(*booster.inserted, weak)), step_s=0.005)
+    assert np.max(np.abs(found - stepped(*values, supply=supply))) < 0.02
 
 
 @pytest.mark.parametrize("values", [(0.3, 0.5, 0.0), (0.1, 0.15, 1.5), (1.0, 0.6, 3.0)])

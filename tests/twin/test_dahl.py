@@ -15,6 +15,7 @@ from twin.catalog import effect
 from twin.kernels.dahl import dahl_target
 from twin.kernels.play import common_start, play_target
 from twin.plant import Inserted, Plant, curve_tables
+from twin.slots import V_DAHL, V_DAHL_HALF
 
 DESIGN = DesignModel()
 STOPS = (0.0, DESIGN.travel)
@@ -124,4 +125,4 @@ def test_the_plays_that_stand_for_it_in_the_force_balance_turn_like_it(distance:
 
 def test_no_distance_is_no_effect() -> None:
     c = plant_with(0.0).coefficients(1.0)
-    assert c.spreads.size == 1 and not c.valve[-2:].any()
+    assert c.spreads.size == 1 and not c.valve[[V_DAHL, V_DAHL_HALF]].any()

@@ -3,9 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_RATE_CLOSE, V_RATE_OPEN, V_TAU_CLOSE_S, V_TAU_OPEN_S
+from twin.slots import (
+    V_DRAG_CLOSE_S,
+    V_DRAG_OPEN_S,
+    V_RATE_CLOSE,
+    V_RATE_OPEN,
+    V_TAU_CLOSE_S,
+    V_TAU_OPEN_S,
+)
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -32,6 +40,17 @@ def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_RATE_OPEN] /= 1.0 - values[0]
 
 
+def _drag_each_way(c: Coefficients, values: Sequence[float]) -> None:
+    # Friction that grows with speed takes pressure; what pulls against a stop has pressure to spare.
+    c.valve[V_DRAG_CLOSE_S] += values[0] * c.valve[V_TAU_CLOSE_S]
+    c.valve[V_DRAG_OPEN_S] += values[1] * c.valve[V_TAU_OPEN_S]
+
+
+def _drag(way: str) -> Parameter:
+    doc = f"what drag adds to the time constant {way}, as a share of it, as long as no stop limits the pull"
+    return replace(_parameter(way, doc), starts=(-0.3, -0.03, 0.03, 0.3), scale=0.3)
+
+
 _ASYMMETRY = _parameter(
     "asymmetry", "half the difference of the time constants over their mean, positive = closes slowly"
 )
@@ -40,11 +59,14 @@ EFFECT = Effect(
     name="asymmetric_damping",
     stage="actuator",
     claim="The time constants closing and opening differ.",
-    equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening",
-    source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967)",
+    equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
+    "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way",
+    source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967); "
+    "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (viscous friction)",
     forms=(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
+        Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
     ),
     absorbs=("tau",),
 )

@@ -12,6 +12,8 @@ from twin.slots import (
     V_CREEP2_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
+    V_RELAX,
+    V_RELAX_TAU_S,
     V_TARGET_CREEPS,
 )
 
@@ -69,13 +71,20 @@ def _force(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_FORCE_CREEP_TAU_S] = values[1]
 
 
+def _relax(c: Coefficients, values: Sequence[float]) -> None:
+    # What gives way is the spring itself: a stem that a stop holds does not load it any more, as air goes on doing.
+    c.valve[V_RELAX] = values[0] / c.design.compliance
+    c.valve[V_RELAX_TAU_S] = values[1]
+
+
 EFFECT = Effect(
     name="creep",
     stage="actuator",
     claim="A slow tail follows the fast response.",
     equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
     "6 tail; pull: the same on the target of the stem, before its lag and rate limit (on the stem where the two act on "
-    "each other); force: the same on the pressure before the play",
+    "each other); force: the same on the pressure before the play; "
+    "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail",
     source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
     forms=(
         Form("one_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail")), _one_tail),
@@ -83,6 +92,7 @@ EFFECT = Effect(
         Form("pull_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the pull")), _pull),
         Form("pull_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _pull_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
+        Form("spring_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which the spring relaxes")), _relax),
     ),
     absorbs=("compliance", "offset", "tau"),
 )

@@ -13,6 +13,7 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_FULL_DOWN,
     EP_FULL_UP,
+    EP_NOMINAL,
     EP_OPEN,
     EP_RATE_DOWN,
     EP_RATE_UP,
@@ -23,6 +24,8 @@ from twin.slots import (
 
 #: Error at which a booster is fully open, as a share of the pressure that the travel takes: a tenth of a psi.
 _WIDE = 0.034
+#: The usual supply of instruments [atmospheres], and over the highest signal (IEC 60382: 140 kPa, 20 to 100 kPa).
+_SUPPLY, _OVER = 1.38, 1.4
 
 
 def _slowness(name: str, doc: str) -> Parameter:
@@ -79,6 +82,7 @@ def _orifices(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[[EP_ATMOSPHERE, EP_AMBIENT]] = atmosphere(d.pressure_unit)
     c.ep[EP_REFERENCE] = max(d.offset, c.ep[EP_AMBIENT] + 0.1 * c.ep[EP_ATMOSPHERE])
     c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = _rate(values[0]), _rate(values[1])
+    c.ep[EP_NOMINAL] = max(_SUPPLY * c.ep[EP_ATMOSPHERE] + c.ep[EP_AMBIENT], _OVER * (d.a1 + d.travel / d.compliance))
     c.ep[EP_OPEN] = _WIDE * d.travel / d.compliance
     c.ep[EP_AIR] = values[2] / d.travel
 

@@ -34,11 +34,18 @@ def _hinged_mid(c: Coefficients, values: Sequence[float]) -> None:
     c.open_shift -= shift
 
 
+def _at_stem(c: Coefficients, values: Sequence[float]) -> None:
+    # What the stem itself feels changes how fast it goes, too: a stiffer way has the shorter time constant.
+    less = values[0] * c.xi * c.design.travel / c.design.compliance
+    c.bend_at_stem(-less, less)
+
+
 EFFECT = Effect(
     name="spring_asymmetry",
     stage="actuator",
     claim="The compliance differs between closing and opening (k1 != k2).",
-    equations="closing p = a1 + w/k1, opening p = a2 + w/k2, 1/k1 = (1 - asymmetry)/k, 1/k2 = (1 + asymmetry)/k",
+    equations="closing p = a1 + w/k1, opening p = a2 + w/k2, 1/k1 = (1 - asymmetry)/k, 1/k2 = (1 + asymmetry)/k; "
+    "at_stem: x in place of w where they differ from 1/k",
     source="Lustrino, MIT thesis (2009), section 2.1 (k1 and k2 measured, their mean used)",
     forms=(
         Form(
@@ -49,6 +56,7 @@ EFFECT = Effect(
         Form(
             "hinged_mid", _asymmetry("half the difference of the stiffnesses, deadband kept at mid travel"), _hinged_mid
         ),
+        Form("at_stem", _asymmetry("half the difference of the stiffnesses that the stem feels"), _at_stem),
     ),
     twins=("position_dependent_friction",),
     absorbs=("compliance", "deadband", "offset"),

@@ -58,9 +58,11 @@ EFFECT = Effect(
     name="supply_saturation",
     stage="ep",
     claim="Pressure cannot exceed what the air supply gives.",
-    equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply; "
+    equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply, "
+    "and through a booster only what ISO 6358 lets flow from that supply; "
     "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction)",
-    source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators)",
+    source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators); "
+    "ISO 6358-1 (flow from a supply)",
     forms=(
         Form("ceiling", (_SUPPLY,), _apply),
         Form("cut_off", (_SUPPLY,), _clip),

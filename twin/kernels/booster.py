@@ -1,8 +1,8 @@
 """A converter whose pilot is followed by a booster of limited flow, into a chamber that grows as the stem closes.
 
-Filling is choked and goes at one rate whatever the pressure; exhausting to the atmosphere slows down as the pressure
-falls; a stem that closes makes the chamber larger and takes air, which counts most where little air can flow. Close to
-the pilot's pressure the booster opens in proportion.
+Filling is choked and goes at one rate whatever the pressure, until it comes near that of a weak supply; exhausting to
+the atmosphere slows down as the pressure falls; a stem that closes makes the chamber larger and takes air, which counts
+most where little air can flow. Close to the pilot's pressure the booster opens in proportion.
 Source: Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (chamber and orifices); ISO 6358-1 (flow).
 """
 
@@ -22,6 +22,7 @@ from twin.slots import (
     EP_DRAW,
     EP_FULL_DOWN,
     EP_FULL_UP,
+    EP_NOMINAL,
     EP_OPEN,
     EP_REFERENCE,
     EP_REFILL_S,
@@ -33,6 +34,8 @@ from twin.slots import (
 
 #: Pressure ratio below which the flow is choked: of a sharp-edged orifice, and near that of valves.
 _CHOKED = 0.5
+#: Of an interval of a few psi, down to far less than a reading tells.
+_HALVINGS = 26
 
 Pair = tuple[float, float]
 
@@ -48,6 +51,36 @@ def outflow(p: float, atmosphere: float) -> float:
     above = (ratio - _CHOKED) / (1.0 - _CHOKED)
     flow: float = (p + atmosphere) * np.sqrt(max(0.0, 1.0 - above * above))
     return flow
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def inflow(p: float, supply: float) -> float:
+    """Flow from a supply over what it is while choked; both pressures absolute (ISO 6358-1)."""
+    above = max(0.0, (p / supply - _CHOKED) / (1.0 - _CHOKED))
+    flow: float = np.sqrt(max(0.0, 1.0 - above * above))
+    return flow
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def weak_supply(p: float, h: float, chamber: Pair, c: FloatArray) -> Pair:
+    """Flow through a full opening from a weak supply, and the pressure to which it fills the chamber in `h` from `p`.
+
+    `chamber`: rate at which the stem takes pressure, and volume. The pressure is implicit, since the flow drops steeply
+    as it comes near the supply's.
+    """
+    absolute = c[EP_ATMOSPHERE] - c[EP_AMBIENT]
+    supply, p = c[EP_CLIP] + absolute, p + absolute
+    flow = c[EP_FULL_UP] * min(1.0, supply / (c[EP_NOMINAL] + absolute))
+    before = p - h * chamber[0] / chamber[1]
+    low, high = min(before, supply), min(before + h * flow / chamber[1], supply)
+    if high > _CHOKED * supply:
+        for _ in range(_HALVINGS):
+            q = 0.5 * (low + high)
+            if q > before + h * flow / chamber[1] * inflow(q, supply):
+                high = q
+            else:
+                low = q
+    return flow * max(inflow(p, supply), inflow(high, supply)), high - absolute
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -117,10 +150,10 @@ def booster_pass(
             # what goes by the pressure goes by that in the middle of the step
             gauge = p + 0.5 * (p - before) - c[EP_AMBIENT]
             taken = c[EP_AIR] * (gauge + c[EP_ATMOSPHERE]) * speed
-            full = (c[EP_FULL_UP], c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
             chamber = (taken, 1.0 + c[EP_AIR] * max(x, 0.0))
-            new = _chamber_step(p, (v, new_v), h, chamber, full, (c[EP_OPEN], idle))
-            new = min(c[EP_CLIP], new)
+            up, most = weak_supply(p, h, chamber, c) if c[EP_CLIP] < FOREVER else (c[EP_FULL_UP], FOREVER)
+            full = (up, c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
+            new = min(most, _chamber_step(p, (v, new_v), h, chamber, full, (c[EP_OPEN], idle)))
             if c[EP_TANK] < FOREVER:
                 sunk = sunk * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
             before, p, v = p, new, new_v

@@ -1,7 +1,7 @@
 """Play and stem in one loop, for effects in which the target depends on how the stem moves.
 
-Friction inside the force balance, breakaway with a stick speed, friction that falls with speed, wear with distance,
-forces that depend on where the stem is (not on where it is pulled to).
+Friction inside the force balance, breakaway with a stick speed, friction that falls or grows with speed, wear with
+distance, a spring that relaxes, forces that depend on where the stem is (not on where it is pulled to).
 The small functions stand here once more on purpose: a compiled cache notices edits of its own file only. They are given
 numbers, no arrays: what an array is handed to counts references, each step, which cost more than all the physics.
 """
@@ -17,10 +17,14 @@ from twin.slots import (
     FOREVER,
     V_AGING_S,
     V_BREAKAWAY,
+    V_DRAG_CLOSE_S,
+    V_DRAG_OPEN_S,
     V_HELD,
     V_IN_MOTION,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_RELAX,
+    V_RELAX_TAU_S,
     V_SHORT,
     V_STICK_SPEED,
     V_STRIBECK,
@@ -34,6 +38,8 @@ from twin.slots import (
 )
 
 _SAME = 1e-9
+
+Pair = tuple[float, float]
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -49,6 +55,14 @@ def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
 def _decay(h: float, tau_s: float) -> tuple[float, float]:
     """Decay of a lag over `h`, and tau / h."""
     return (np.exp(-h / tau_s), tau_s / h) if tau_s > 1e-9 else (0.0, 0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _lags(h: float, c: FloatArray) -> tuple[tuple[Pair, Pair], tuple[Pair, Pair], Pair, float]:
+    """Decays over `h`: (closing, opening), the same with drag, of the lag after the play, of what relaxes."""
+    close_s, open_s = c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]
+    drags = (_decay(h, close_s + c[V_DRAG_CLOSE_S]), _decay(h, open_s + c[V_DRAG_OPEN_S]))
+    return (_decay(h, close_s), _decay(h, open_s)), drags, _decay(h, c[V_TAU_AFTER_S]), np.exp(-h / c[V_RELAX_TAU_S])
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -78,16 +92,9 @@ def _unheld(free: float, held: float, inside: bool, ends: tuple[float, float]) -
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _element(
-    e: float,
-    free: tuple[float, float],
-    held: tuple[float, float],
-    extra: tuple[float, float],
-    modes: tuple[bool, bool],
-    ends: tuple[float, float],
-) -> tuple[float, bool]:
-    """Where an element goes between its curves (closing, opening), `free` and as the breakaway holds it, and whether it
-    slipped.
+def _element(e: float, free: Pair, held: Pair, extra: Pair, modes: tuple[bool, bool], ends: Pair) -> tuple[float, bool]:
+    """Where an element goes between its curves (closing, opening), `free` and as the breakaway holds it, if no stop
+    holds it, and whether it slipped.
 
     `extra`: what it takes to start (closing, opening). `modes`: whether it jumps, and whether only what lies inside
     the stops pulls. `ends`: the stops.
@@ -101,7 +108,7 @@ def _element(
         if modes[0] and extra[0] > 0.0:
             bottom = _jumps(e, bottom, low) if bottom > e else bottom
             top = _jumps(e, top, high) if top < e else top
-    return max(ends[0], min(ends[1], max(bottom, min(top, e)))), True
+    return max(bottom, min(top, e)), True
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -121,6 +128,19 @@ def _breakaway(stuck: bool, toward: float, rested: float, force: float, aging_s:
 def _left(target: float, x: float, kept: float) -> float:
     """The target that is left of one when friction keeps so much of its pull on a stem at `x`."""
     return target - max(-kept, min(kept, target - x))
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _moved(x: float, pulls: Pair, over: Pair, end: float, lag: Pair, drag: Pair) -> float:
+    """The stem after a step; `pulls`: toward what, before and now, `over`: by how much more if no stop limited it.
+
+    `drag`: the lag where friction grows with speed, for which air has pressure to spare at the stop `end`: of both laws
+    the slower one holds.
+    """
+    if drag[0] == lag[0]:
+        return _toward(x, pulls[0], pulls[1], lag)
+    free, held = _toward(x, pulls[0] + over[0], pulls[1] + over[1], drag), _toward(x, end, end, lag)
+    return free if abs(free - x) < abs(held - x) else held
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -144,13 +164,14 @@ def coupled_start(
         place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
         more, less = more + _curve_at(x, place, bends[0]), less - _curve_at(x, place, bends[1])
         softer = _curve_at(x, place, bends[2])
-    w = 0.0
+    w = over = 0.0
     for j in range(elements.size):
         bottom = softer * _curve_at(force - plays[0][j] - more, grid, tables[2])
         top = softer * _curve_at(force + plays[0][j] + less, grid, tables[3])
-        elements[j] = max(ends[0], min(ends[1], max(bottom, min(top, elements[j]))))
-        w += plays[1][j] * elements[j]
-    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER]), elements
+        reach = max(bottom, min(top, elements[j]))
+        elements[j] = max(ends[0], min(ends[1], reach))
+        w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
+    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, over, x]), elements
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -171,36 +192,33 @@ def coupled_steps(
     """Fills `out` (fine) with the stem and moves `state` and `elements` on.
 
     `state`: stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck
-    [s].
+    [s], by how much what pulls the stem is beyond the stops, where the spring is that has relaxed.
     """
     # Arrays are taken out of their tuples, and numbers out of arrays, once: in the loop it would count references.
     grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
-    spreads, weights = plays
-    more_at, less_at, softer_at = bends
-    bent, place = more_at.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
-    ends, lowest, highest, varies = (stops[0], stops[1]), stops[2], stops[3], widening.size > 1
-    breakaway, aging_s, kept, stick_speed = c[V_BREAKAWAY], c[V_AGING_S], c[V_HELD], c[V_STICK_SPEED]
-    modes = (stick_speed >= FOREVER, c[V_TARGET_STICKS] != 0.0)
-    stribeck, short, fading = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED]
-    wear, in_motion, rate_close, rate_open = c[V_WEAR], c[V_IN_MOTION], c[V_RATE_CLOSE], c[V_RATE_OPEN]
-    x, w, after, stuck = state[0], state[1], state[2], state[3] != 0.0
-    speed, toward, travelled, rested = state[4], state[5], state[6], state[7]
+    (spreads, weights), (more_at, less_at, softer_at) = plays, bends
+    bent, varies, place = more_at.size > 1, widening.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    ends, lowest, highest, aging_s = (stops[0], stops[1]), stops[2], stops[3], c[V_AGING_S]
+    breakaway, kept, stick_speed = c[V_BREAKAWAY], c[V_HELD], c[V_STICK_SPEED]
+    modes, rates = (stick_speed >= FOREVER, c[V_TARGET_STICKS] != 0.0), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
+    stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
+    x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
+    speed, toward, travelled, rested, over = state[4], state[5], state[6], state[7], state[8]
     out[0] = x
-    last_h, slows, opens, lates = -1.0, (0.0, 0.0), (0.0, 0.0), (0.0, 0.0)
+    last_h, (lags, drags, lates, stay) = -1.0, _lags(1.0, c)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
-            last_h = h
-            slows, opens, lates = _decay(h, c[V_TAU_CLOSE_S]), _decay(h, c[V_TAU_OPEN_S]), _decay(h, c[V_TAU_AFTER_S])
+            last_h, (lags, drags, lates, stay) = h, _lags(h, c)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             fades = np.exp(-speed / fading) if stribeck > 0.0 or short > 0.0 else 0.0
             more, softer = widening[f if varies else 0] + wear * travelled + stribeck * fades, 1.0
-            less = more
+            more, less = more + relax * (x - late), more - relax * (x - late)
             if bent:
                 more, less = more + _curve_at(x, place, more_at), less - _curve_at(x, place, less_at)
                 softer = _curve_at(x, place, softer_at)
-            extra, carried = _breakaway(stuck, toward, rested, breakaway, aging_s), in_motion * (x - w)
-            new_w, slipped = 0.0, False
+            extra, carried = _breakaway(stuck, toward, rested, breakaway, aging_s), moves * (x - w)
+            new_w, new_over, slipped = 0.0, 0.0, False
             for j in range(elements.size):
                 down, up = force[f] - spreads[j] - more, force[f] + spreads[j] + less
                 free = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
@@ -208,21 +226,22 @@ def coupled_steps(
                 if breakaway > 0.0:
                     low, high = _curve_at(down - extra[0], grid, closing), _curve_at(up + extra[1], grid, opening)
                     held = (softer * low, softer * high)
-                elements[j], slips = _element(elements[j] + carried, free, held, extra, modes, ends)
+                reach, slips = _element(elements[j] + carried, free, held, extra, modes, ends)
+                elements[j] = max(ends[0], min(ends[1], reach)) if slips else reach
                 slipped = slipped or slips
-                new_w += weights[j] * elements[j]
+                new_w, new_over = new_w + weights[j] * elements[j], new_over + weights[j] * (reach - elements[j])
             new_after = _toward(after, w, new_w, lates)
-            pulls, will_pull = _left(after, x, short * fades), _left(new_after, x, short * fades)
-            new = _toward(x, pulls, will_pull, slows if after + new_after > 2.0 * x else opens)
-            new = max(lowest, min(highest, max(x - rate_open * h, min(x + rate_close * h, new))))
+            pulls = _left(after, x, short * fades), _left(new_after, x, short * fades)
+            way = 0 if after + new_after > 2.0 * x else 1
+            new = _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drags[way])
+            new = max(lowest, min(highest, max(x - rates[1] * h, min(x + rates[0] * h, new))))
             if kept > 0.0:
                 slipped = abs(new_after - x) > kept
                 new = x if stuck and not slipped else new
-            deciding = abs(new_w - w) if modes[1] else abs(new - x)
-            stuck = (stuck and not slipped) or deciding < stick_speed * h
+            stuck = (stuck and not slipped) or abs(new_w - w if modes[1] else new - x) < stick_speed * h
             speed, travelled = abs(new - x) / h, travelled + abs(new - x)
             rested, toward = rested + h if stuck else 0.0, new - x if new != x else toward
-            x, w, after = new, new_w, new_after
-            out[f] = x
-    state[0], state[1], state[2], state[3] = x, w, after, 1.0 if stuck else 0.0
-    state[4], state[5], state[6], state[7] = speed, toward, travelled, rested
+            out[f] = x = new
+            w, after, over, late = new_w, new_after, new_over, x + (late - x) * stay
+    state[0], state[1], state[2], state[3], state[4] = x, w, after, 1.0 if stuck else 0.0, speed
+    state[5], state[6], state[7], state[8], state[9] = toward, travelled, rested, over, late

@@ -14,9 +14,13 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.slots import (
+    V_DRAG_CLOSE_S,
+    V_DRAG_OPEN_S,
     V_PRESLIDING,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_RELAX,
+    V_RELAX_TAU_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
     V_TRAVEL,
@@ -71,7 +75,7 @@ def elastic_start(
     way, back = (1.0 if friction >= 0.0 else -1.0), np.linspace(0.0, slips[-1], 129)
     shares = np.mean(np.clip(1.0 - back[:, None] / slips, -1.0, 1.0), axis=1)
     held = way * np.clip(slips - np.interp(-abs(friction), -shares, back), -slips, slips)
-    return np.array([x, 0.0]), np.ascontiguousarray(held)
+    return np.array([x, 0.0, x]), np.ascontiguousarray(held)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -104,6 +108,7 @@ def _held_step(
     h: float,
     between: tuple[float, float],
     stops: tuple[float, float, float, float],
+    stays_s: tuple[float, float],
     lags_s: tuple[float, float],
     rates: tuple[float, float],
     held: FloatArray,
@@ -112,7 +117,8 @@ def _held_step(
 ) -> tuple[float, float]:
     """The stem after `h`, and the friction then; on the way the springs slip one after the other.
 
-    `between`: the curves, friction against closing and against opening; `stops`: of what it is pulled to, of itself.
+    `between`: the curves, friction against closing and against opening; `stops`: of what it is pulled to, of itself;
+    `stays_s`: lags where a stop limits the pull, `lags_s`: where none does.
     """
     left = h
     for _ in range(slips.size + 1):
@@ -122,7 +128,7 @@ def _held_step(
         stiff, nearest = _give(toward, held, slips)
         room = max(0.0, stops[3] - x if toward > 0.0 else x - stops[2])
         hold = 1.0 + (0.5 * (between[1] - between[0]) * stiff if target == pull else 0.0)
-        tau_s, rate = (lags_s[0], rates[0]) if toward > 0.0 else (lags_s[1], rates[1])
+        tau_s, rate = (stays_s if target != pull else lags_s)[0 if toward > 0.0 else 1], rates[0 if toward > 0.0 else 1]
         far = abs(target - x) / hold
         way = min(far * (1.0 - np.exp(-left * hold / max(tau_s, 1e-12))), rate * left, room)
         if way <= nearest:
@@ -132,6 +138,12 @@ def _held_step(
         if left <= 0.0:
             break
     return x, friction
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _decays(h: float, lags_s: tuple[float, float]) -> tuple[float, float]:
+    """What is left of a distance after `h`, closing and opening."""
+    return np.exp(-h / max(lags_s[0], 1e-12)), np.exp(-h / max(lags_s[1], 1e-12))
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -151,17 +163,24 @@ def _freely(
     between: tuple[float, float],
     stops: tuple[float, float, float, float],
     stays: tuple[float, float],
+    drags: tuple[float, float],
     rates: tuple[float, float],
     friction: float,
 ) -> tuple[float, bool]:
-    """The stem after `h` where every spring slips already on its way, and whether they do; `stays`: decays over `h`."""
+    """The stem after `h` where every spring slips already on its way, and whether they do.
+
+    `stays`: decays over `h` toward a stop; `drags`: with the drag, for which a pull at a stop has air to spare.
+    """
     closes = friction > 0.0
-    target = max(stops[0], min(stops[1], between[0] if closes else between[1]))
+    pull = between[0] if closes else between[1]
+    target = max(stops[0], min(stops[1], pull))
     if abs(friction) < 1.0 - _SAME or (target < x if closes else target > x):
         return x, False
     if closes:
-        return min(max(x, stops[3]), x + min((target - x) * (1.0 - stays[0]), rates[0] * h)), True
-    return max(min(x, stops[2]), x + max((target - x) * (1.0 - stays[1]), -rates[1] * h)), True
+        way = min((pull - x) * (1.0 - drags[0]), (stops[1] - x) * (1.0 - stays[0]))
+        return min(max(x, stops[3]), x + min(way, rates[0] * h)), True
+    way = max((pull - x) * (1.0 - drags[1]), (stops[0] - x) * (1.0 - stays[1]))
+    return max(min(x, stops[2]), x + max(way, -rates[1] * h)), True
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -179,28 +198,29 @@ def elastic_steps(
     held: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled) and `held` on."""
-    grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
-    more_at, less_at, softer_at = bends
-    slips = stretches(c[V_PRESLIDING])
-    place = (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled, relaxed spring) and `held` on."""
+    (closing, opening), (more_at, less_at, softer_at) = tables[2:], bends
+    slips, grid = stretches(c[V_PRESLIDING]), (tables[0], 1.0 / tables[1])
+    place, late = (0.0, (more_at.size - 1) / c[V_TRAVEL]), state[2]
     ends, varies = (stops[0], stops[1], stops[2], stops[3]), widening.size > 1
     lags_s, rates, wear = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN]), c[V_WEAR]
-    last_h, stays = -1.0, (0.0, 0.0)
+    drags_s = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S])
+    last_h, stays, drags, stay = -1.0, (0.0, 0.0), (0.0, 0.0), 1.0
     x, travelled, friction = state[0], state[1], _stretched(0.0, held, slips)
     out[0] = x
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
-            last_h, stays = h, (np.exp(-h / max(lags_s[0], 1e-12)), np.exp(-h / max(lags_s[1], 1e-12)))
+            last_h, stays, drags, stay = h, _decays(h, lags_s), _decays(h, drags_s), np.exp(-h / c[V_RELAX_TAU_S])
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            p, wide = 0.5 * (force[f - 1] + force[f]), widening[f if varies else 0] + wear * travelled
+            p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
+            wide = widening[f if varies else 0] + wear * travelled
             more, less, softer = _bend(x, place, more_at, less_at, softer_at)
-            down, up = p - wide - more, p + wide - less
-            between = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
-            out[f], free = _freely(x, h, between, ends, stays, rates, friction)
+            below, above = _curve_at(p - wide - more, grid, closing), _curve_at(p + wide - less, grid, opening)
+            between = (softer * below, softer * above)
+            out[f], free = _freely(x, h, between, ends, stays, drags, rates, friction)
             if not free:
-                out[f], friction = _held_step(x, h, between, ends, lags_s, rates, held, slips, friction)
+                out[f], friction = _held_step(x, h, between, ends, lags_s, drags_s, rates, held, slips, friction)
             travelled += abs(out[f] - x)
-            x = out[f]
-    state[0], state[1] = x, travelled
+            x, late = out[f], out[f] + (late - out[f]) * stay
+    state[0], state[1], state[2] = x, travelled, late

@@ -14,8 +14,12 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.slots import (
+    V_DRAG_CLOSE_S,
+    V_DRAG_OPEN_S,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_RELAX,
+    V_RELAX_TAU_S,
     V_ROUNDED,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
@@ -47,7 +51,8 @@ def rounded_start(
     start: tuple[float, float],
 ) -> tuple[FloatArray, FloatArray]:
     """State (see `rounded_steps`) with the stem at `start[0]`; nothing else is remembered."""
-    return np.array([max(stops[2], min(stops[3], start[0])), 0.0]), np.zeros(1)
+    x = max(stops[2], min(stops[3], start[0]))
+    return np.array([x, 0.0, x]), np.zeros(1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -80,16 +85,18 @@ def _moved(
     between: tuple[float, float],
     stops: tuple[float, float, float, float],
     lags_s: tuple[float, float],
+    drags_s: tuple[float, float],
     rates: tuple[float, float],
     v0: float,
 ) -> float:
     """The stem after `h`. `between`: the curves, friction against closing and against opening; `stops`: of what it is
-    pulled to, of itself.
+    pulled to, of itself; `drags_s`: what drag adds to the lags where no stop limits the pull.
     """
     middle = 0.5 * (between[0] + between[1])
     way = 1.0 if middle > x else -1.0
     tau_s, rate = (lags_s[0], rates[0]) if way > 0.0 else (lags_s[1], rates[1])
-    v, slope = _speed(way * (middle - x), 0.5 * (between[1] - between[0]), tau_s, v0)
+    dragged_s = tau_s + (drags_s[0] if way > 0.0 else drags_s[1])
+    v, slope = _speed(way * (middle - x), 0.5 * (between[1] - between[0]), max(dragged_s, 1e-9), v0)
     # forces balance between the stops only: beyond, what is too much pulls no harder
     room = max(0.0, stops[1] - x if way > 0.0 else x - stops[0])
     if tau_s * v > room:
@@ -114,28 +121,28 @@ def rounded_steps(
     _elements: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled) on."""
+    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled, relaxed spring) on."""
     grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
     more_at, less_at, softer_at = bends
-    bent = more_at.size > 1
-    place = (0.0, (more_at.size - 1) / c[V_TRAVEL])
+    bent, place = more_at.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
     varies, wear, v0 = widening.size > 1, c[V_WEAR], max(c[V_ROUNDED], 1e-9)
     lags_s, rates = (max(c[V_TAU_CLOSE_S], 1e-9), max(c[V_TAU_OPEN_S], 1e-9)), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
-    ends = (stops[0], stops[1], stops[2], stops[3])
+    ends, drags_s = (stops[0], stops[1], stops[2], stops[3]), (c[V_DRAG_CLOSE_S], c[V_DRAG_OPEN_S])
     more, less, softer = 0.0, 0.0, 1.0
-    x, travelled = state[0], state[1]
+    x, travelled, late = state[0], state[1], state[2]
     out[0] = x
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            p, wide = 0.5 * (force[f - 1] + force[f]), widening[f if varies else 0] + wear * travelled
+            p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
+            wide = widening[f if varies else 0] + wear * travelled
             if bent:
                 more = _curve_at(x, place, more_at)
                 less, softer = _curve_at(x, place, less_at), _curve_at(x, place, softer_at)
             bottom = softer * _curve_at(p - wide - more, grid, closing)
             top = max(bottom, softer * _curve_at(p + wide - less, grid, opening))
-            new = _moved(x, h, (bottom, top), ends, lags_s, rates, v0)
+            new = _moved(x, h, (bottom, top), ends, lags_s, drags_s, rates, v0)
             travelled += abs(new - x)
-            x = new
+            x, late = new, new + (late - new) * np.exp(-h / c[V_RELAX_TAU_S])
             out[f] = x
-    state[0], state[1] = x, travelled
+    state[0], state[1], state[2] = x, travelled, late

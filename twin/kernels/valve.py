@@ -28,6 +28,8 @@ from twin.slots import (
     V_CREEP2_TAU_S,
     V_DAHL,
     V_DAHL_HALF,
+    V_DRAG_CLOSE_S,
+    V_DRAG_OPEN_S,
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
@@ -44,6 +46,7 @@ from twin.slots import (
     V_PRESLIDING,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_RELAX,
     V_REMEMBERS,
     V_ROUNDED,
     V_SHORT,
@@ -59,7 +62,7 @@ from twin.slots import (
     stem_stops,
 )
 
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT]
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
 _STIFF = [V_BREAKAWAY, V_STRIBECK, V_HELD, V_SHORT, V_TAU_AFTER_S]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4

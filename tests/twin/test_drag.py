@@ -1,0 +1,37 @@
+"""Drag that is its own each way: against small steps of its law, in every loop that moves a stem."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from tests.twin.judged import a_record
+from tests.twin.loops import FRICTIONS, D, at_once, in_small_steps, plant, row_by_row
+from twin.diagnose import diagnose
+from twin.plant import Plant
+
+
+def dragged(friction: str, drag: tuple[float, float]) -> Plant:
+    return plant(friction, "asymmetric_damping", "drag_each_way", drag)
+
+
+@pytest.mark.parametrize("friction", FRICTIONS)
+@pytest.mark.parametrize("drag", [(0.5, -0.4), (-0.3, 0.8), (0.0, -0.5)])
+def test_like_small_steps_of_its_law(friction: str, drag: tuple[float, float]) -> None:
+    """What a stop takes of the pull is there for the drag."""
+    assert np.max(np.abs(at_once(dragged(friction, drag)) - in_small_steps(friction, drag))) < 0.004 * D.travel
+
+
+@pytest.mark.parametrize("friction", FRICTIONS)
+def test_live_and_with_other_steps_as_at_once(friction: str) -> None:
+    one = dragged(friction, (0.5, -0.4))
+    assert np.max(np.abs(at_once(one, 0.05) - at_once(one, 0.005))) < 0.003 * D.travel
+    assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
+
+
+def test_a_stem_that_opens_with_less_drag_is_told_from_other_lags() -> None:
+    found = diagnose([a_record(dragged("before the lag", (0.0, -0.35)), seed=3)], D).diagnosis
+    assert [c.name for c in found.causes] == ["asymmetric_damping"]
+    assert found.causes[0].form == "drag_each_way"
+    assert found.causes[0].parameters["opening"].value == pytest.approx(-0.35, abs=0.02)
+    assert found.causes[0].parameters["closing"].value == pytest.approx(0.0, abs=0.02)
