@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.shapes import bow, swing
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -23,20 +24,26 @@ def _parameter(name: str, doc: str) -> Parameter:
 
 
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
-    shift = values[0] * 4.0 * c.xi * (1.0 - c.xi)
+    shift = values[0] * bow(c.xi)
     c.close_shift += shift
     c.open_shift += shift
 
 
 def _bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
     _bow(c, values)
-    shift = values[1] * 10.4 * c.xi * (1.0 - c.xi) * (1.0 - 2.0 * c.xi)
+    shift = values[1] * swing(c.xi)
     c.close_shift += shift
     c.open_shift += shift
 
 
 def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
-    shift = values[0] * 4.0 * c.xi * (1.0 - c.xi)
+    shift = values[0] * bow(c.xi)
+    c.bend_at_stem(shift, shift)
+
+
+def _stem_bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
+    _stem_bow(c, values)
+    shift = values[1] * swing(c.xi)
     c.bend_at_stem(shift, shift)
 
 
@@ -57,7 +64,13 @@ def _area_slope(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _area_bow(c: Coefficients, values: Sequence[float]) -> None:
-    _area(c, values[0] * 4.0 * c.xi * (1.0 - c.xi))
+    _area(c, values[0] * bow(c.xi))
+
+
+def _stem_area(c: Coefficients, values: Sequence[float]) -> None:
+    # k (p (1 + share) - a - x / k) is (1 + share) k (p - a / (1 + share)) - x
+    larger = 1.0 + values[0] * (c.xi - 0.5)
+    c.bend_at_stem(c.design.a1 * (1.0 / larger - 1.0), c.design.a2 * (1.0 / larger - 1.0), larger)
 
 
 _BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
@@ -89,16 +102,18 @@ EFFECT = Effect(
     stage="actuator",
     claim="Compliance depends on position.",
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
-    "stem_bow: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
-    "area_*: p (1 + area (xi - 1/2)), or p (1 + area 4 xi (1 - xi)), in place of p",
+    "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
+    "area_*: p (1 + area (xi - 1/2)), or p (1 + area 4 xi (1 - xi)), in place of p, xi = w/travel; stem_area: x/travel",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
         Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing),
         Form("stem_bow", (_BOW,), _stem_bow),
+        Form("stem_bow_and_swing", (_BOW, _SWING), _stem_bow_and_swing),
         Form("stem_slope", (_SLOPE,), _stem_slope),
         Form("area_slope", (_AREA,), _area_slope),
         Form("area_bow", (_AREA_MID,), _area_bow),
+        Form("stem_area", (_AREA,), _stem_area),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),
@@ -106,6 +121,7 @@ EFFECT = Effect(
         "bow": ("flow_force",),
         "bow_and_swing": ("flow_force",),
         "stem_bow": ("flow_force",),
+        "stem_bow_and_swing": ("flow_force",),
         "stem_slope": ("flow_force",),
     },
 )

@@ -44,6 +44,9 @@ _BURR = replace(
     _height("extra pressure at the centre, needed in one direction only"), lower=0.0, starts=(0.04, 0.25, 0.8)
 )
 
+_MID = _height("extra half deadband at mid travel against the ends, 1.5 times")
+_OPEN, _CLOSED = (_height(f"extra half deadband at fully {end}") for end in ("open", "closed"))
+
 #: Points of the travel at which the profile is free: four pieces for each of three waves along the stroke.
 KNOTS = tuple(k / 12 for k in range(13))
 
@@ -80,10 +83,25 @@ def _spot(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * bump(c.xi, values[1], values[2]))
 
 
-def _stem_spot(c: Coefficients, values: Sequence[float]) -> None:
+def _grip(c: Coefficients, shape: FloatArray) -> None:
     # The packing grips the stem where it is; going by where it is pulled to is right only when it is slow.
-    shape = values[0] * bump(c.xi, values[1], values[2])
     c.bend_at_stem(shape, -shape)
+
+
+def _stem_spot(c: Coefficients, values: Sequence[float]) -> None:
+    _grip(c, values[0] * bump(c.xi, values[1], values[2]))
+
+
+def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
+    _grip(c, values[0] * detrended(bow(c.xi), c.xi))
+
+
+def _stem_open_end(c: Coefficients, values: Sequence[float]) -> None:
+    _grip(c, values[0] * np.exp(-c.xi / END))
+
+
+def _stem_closed_end(c: Coefficients, values: Sequence[float]) -> None:
+    _grip(c, values[0] * np.exp(-(1.0 - c.xi) / END))
 
 
 def _closing_spot(c: Coefficients, values: Sequence[float]) -> None:
@@ -121,7 +139,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
     equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
-    "or straight between points of the travel; stem_spot: e of the stem x; closing_spot, opening_spot: e on one of the "
+    "or straight between points of the travel; stem_*: e of the stem x; closing_spot, opening_spot: e on one of the "
     "two curves",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
@@ -129,9 +147,12 @@ EFFECT = Effect(
         Form("stem_spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _stem_spot),
         Form("closing_spot", (_BURR, _CENTRE, _WIDTH), _closing_spot),
         Form("opening_spot", (_BURR, _CENTRE, _WIDTH), _opening_spot),
-        Form("bow", (_height("extra half deadband at mid travel against the ends, 1.5 times"),), _bow),
-        Form("open_end", (_height("extra half deadband at fully open"),), _open_end),
-        Form("closed_end", (_height("extra half deadband at fully closed"),), _closed_end),
+        Form("bow", (_MID,), _bow),
+        Form("open_end", (_OPEN,), _open_end),
+        Form("closed_end", (_CLOSED,), _closed_end),
+        Form("stem_bow", (_MID,), _stem_bow),
+        Form("stem_open_end", (_OPEN,), _stem_open_end),
+        Form("stem_closed_end", (_CLOSED,), _stem_closed_end),
         Form("profile", tuple(_knot(at) for at in KNOTS), _profile, _profile_starts),
     ),
     twins=("stiction", "spring_asymmetry"),
