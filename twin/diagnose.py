@@ -20,7 +20,7 @@ from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
 from twin.diagnosis import Diagnosis
 from twin.effect import Scales
-from twin.fit.channel import predict_reading
+from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, explained_to_noise, retuning_pays, shown_by_pressure, upheld
 from twin.hearing import Hearing
@@ -77,6 +77,7 @@ class Outcome:
     gap: GapParts
     result: StageResult
     next_file: str | None = None
+    pressures: tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]] | None = None  # before and after, if it was read
 
 
 def diagnose(
@@ -138,7 +139,16 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     diagnosis = replace(diagnosis, next_experiment=proposal.next, closed_loop=loop, gap_by_condition=apart)
     if judgement.verdict == "unexplained":
         diagnosis = signed(diagnosis, residual_signature(case, result, itself.loud, itself.swing))
-    return Outcome(diagnosis, known.recordings, model, units, before, again, after, parts, everything, proposal.file)
+    shown = (diagnosis, known.recordings, model, units, before, again, after, parts, everything)
+    return Outcome(*shown, proposal.file, _pressures(case, final))
+
+
+def _pressures(case: Case, final: Plant) -> tuple[tuple[FloatArray, ...], tuple[FloatArray, ...]] | None:
+    """What the given and the updated model make of the pressure, per recording; None where none was read."""
+    if case.sigma_p is None:
+        return None
+    before, after = (tuple(predict_pressure(p, t) for t in case.trials) for p in (case.base, final))
+    return before, after
 
 
 def _upheld(

@@ -60,6 +60,7 @@ def series_of(outcome: Outcome) -> Series:
 
     pressures = [r.pressure if r.pressure is not None else np.full(r.n, np.nan) for r in records]
     measured = any(r.pressure is not None for r in records)
+    modelled = (None, None) if outcome.pressures is None else tuple(joined(parts) for parts in outcome.pressures)
     return Series(
         time_s=joined(tuple(r.time_s for r in records)),
         command=joined(tuple(r.command for r in records)),
@@ -70,6 +71,8 @@ def series_of(outcome: Outcome) -> Series:
         heldout=np.isfinite(outcome.gap.after),
         travel=outcome.model.travel,
         pressure=np.concatenate(pressures) if measured else None,
+        pressure_before=modelled[0],
+        pressure_after=modelled[1],
         false=np.concatenate([t.false for t in outcome.result.case.trials]),
         record=np.concatenate([np.full(r.n, k, dtype=np.int64) for k, r in enumerate(records)]),
         names=tuple(r.name for r in records),

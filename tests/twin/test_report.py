@@ -15,7 +15,7 @@ from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Ranked, Share
 from twin.report.content import cause_rows, columns, gap_marks, ranking_rows, share_bars, top_share
 from twin.report.figures import planes
 from twin.report.page import render, write_report
-from twin.report.series import Series, busiest_window, thin, thin_together
+from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
 from twin.report.words import number, percent
 from twin.statement import statement
 
@@ -73,6 +73,27 @@ def test_page_says_everything(page: str) -> None:
         assert words in page
     assert page.count("<svg") == 4
     assert "nan" not in re.sub(r"<style>.*?</style>", "", page, flags=re.S).lower().replace("nanos", "")
+
+
+@pytest.mark.parametrize(("stage", "pictures"), [("ep", 5), ("sensor", 4)])
+def test_a_cause_in_the_converter_shows_in_a_picture_of_the_pressure(shown: Series, stage: str, pictures: int) -> None:
+    assert shown.pressure is not None
+    late = replace(shown, pressure_before=shown.pressure + 1.0, pressure_after=shown.pressure)
+    cause = Cause("dead_time" if stage == "ep" else "sensor_lag", stage, 0.9, 3.4, {})  # type: ignore[arg-type]
+    known = replace(diagnosis(shown), causes=(cause,))
+    assert render(known, late).count("<svg") == pictures
+    assert render(known, shown).count("<svg") == 4  # nothing to draw it from
+    unclear = replace(known, verdict="unexplained", causes=(), residual_signature={"signal": "pressure"})
+    assert "misses the pressure most" in render(unclear, late)
+
+
+def test_the_stretch_with_the_worst_pressure(shown: Series) -> None:
+    assert shown.pressure is not None and shown.record is not None
+    n = shown.pressure.size
+    off = np.where((np.arange(n) > n - 300) & (np.arange(n) < n - 200), 2.0, 0.0)
+    late = replace(shown, pressure_before=shown.pressure + off, pressure_after=shown.pressure)
+    window = busiest_pressure(late, 400)
+    assert window.start <= n - 300 and window.stop >= n - 200
 
 
 def test_same_input_same_bytes(shown: Series, page: str, tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ def test_only_false_readings_are_not_drawn() -> None:
         before=rows,
         retuned=rows,
         after=rows,
+        pressures=None,
         gap=SimpleNamespace(after=np.where(trial.use_y, 0.0, np.nan)),
         result=SimpleNamespace(case=SimpleNamespace(trials=(trial,))),
     )

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.report.series import Series, busiest_window, thin, thin_together
+from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
 from twin.report.style import AFTER, BEFORE, FLOOR, HELDOUT, INK, MEASURED, MUTED, RETUNED, drawn, new_figure, tidy
 
 if TYPE_CHECKING:
@@ -40,8 +40,7 @@ def over_time(series: Series, floor_percent: float) -> Figure:
 @drawn("Close-up of the stretch where the design model errs most")
 def close_up(series: Series, floor_percent: float, seconds: float = 90.0) -> Figure:
     """The stretch where the design model errs most: command and pressure, position, residual."""
-    period = float(np.median(np.diff(series.run_time_s))) if series.time_s.size > 1 else 1.0
-    rows = busiest_window(series, max(50, round(seconds / period)))
+    rows = busiest_window(series, _rows_in(series, seconds))
     time = series.run_time_s[rows]
     figure = new_figure(10.6, 5.4)
     drive, top, bottom = figure.subplots(3, 1, sharex=True, height_ratios=[1.3, 3, 1.7])
@@ -58,6 +57,27 @@ def close_up(series: Series, floor_percent: float, seconds: float = 90.0) -> Fig
     tidy(top, "", "position [% of travel]")
     tidy(bottom, "run time [s]", "reading - model")
     _legend(drive)
+    _legend(top)
+    top.margins(x=0.005)
+    return figure
+
+
+@drawn("Close-up of the stretch where the design model misses the pressure most")
+def pressure_close_up(series: Series, seconds: float = 90.0) -> Figure:
+    """The stretch where the design model misses the pressure most: command, reading and models; what they leave."""
+    rows = busiest_pressure(series, _rows_in(series, seconds))
+    time = series.run_time_s[rows]
+    figure = new_figure(10.6, 4.2)
+    top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[3, 1.7])
+    assert series.pressure is not None and series.pressure_before is not None and series.pressure_after is not None
+    top.step(time, series.command[rows], where="pre", color=MUTED, linewidth=1.1, label="command")
+    _line(top, time, series.pressure[rows], MEASURED, "measured", 3.4, 0.33)
+    models = ((series.pressure_before, BEFORE, "design model"), (series.pressure_after, AFTER, "updated model"))
+    for model, colour, label in models:
+        _line(top, time, model[rows], colour, label, 1.4)
+        _line(bottom, time, (series.pressure - model)[rows], colour, "", 0.9)
+    tidy(top, "", f"pressure [{series.pressure_unit}]")
+    tidy(bottom, "run time [s]", "reading - model")
     _legend(top)
     top.margins(x=0.005)
     return figure
@@ -116,6 +136,11 @@ def residual_shape(series: Series, floor_percent: float) -> Figure:
     right.minorticks_off()
     _legend(left)
     return figure
+
+
+def _rows_in(series: Series, seconds: float) -> int:
+    period = float(np.median(np.diff(series.run_time_s))) if series.time_s.size > 1 else 1.0
+    return max(50, round(seconds / period))
 
 
 def _spectrum(residual: FloatArray, series: Series) -> tuple[FloatArray, FloatArray]:

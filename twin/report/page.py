@@ -92,17 +92,25 @@ def _chain(diagnosis: Diagnosis) -> dict[str, str]:
 
 def _figures(diagnosis: Diagnosis, series: Series) -> dict[str, str]:
     """The drawn figures by name; text is drawn here so that no figure can fail for want of rows."""
-    from twin.report.figures import close_up, over_time, planes, residual_shape
+    from twin.report.figures import close_up, over_time, planes, pressure_close_up, residual_shape
 
     if series.time_s.size < 100:
         return {}
     floor = diagnosis.gap.noise_floor
+    converter = series.pressure_after is not None and _concerns_converter(diagnosis)
     return {
+        "pressure": pressure_close_up(series) if converter else "",
         "close_up": close_up(series, floor),
         "planes": planes(series),
         "over_time": over_time(series, floor),
         "residual_shape": residual_shape(series, floor),
     }
+
+
+def _concerns_converter(diagnosis: Diagnosis) -> bool:
+    """Whether a cause is one of the converter, or what nothing explains is in the pressure."""
+    unexplained = diagnosis.residual_signature.get("signal") == "pressure"
+    return unexplained or any(c.stage == "ep" for c in diagnosis.causes)
 
 
 def _records(series: Series) -> list[tuple[str, str]]:

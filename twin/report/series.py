@@ -21,7 +21,8 @@ class Series:
 
     Recordings follow each other: `record[i]` is the recording of row i, `time_s` starts anew with each. `before` is the
     design model as given, `retuned` the same with its own numbers refitted, `after` the updated model; all in the unit
-    of position. `heldout` marks rows that no fit has seen, `false` rows recognised as false readings.
+    of position; `pressure_before` and `pressure_after` are what the first and the last of them make of the pressure.
+    `heldout` marks rows that no fit has seen, `false` rows recognised as false readings.
     """
 
     time_s: FloatArray
@@ -33,6 +34,8 @@ class Series:
     travel: float
     retuned: FloatArray | None = None
     pressure: FloatArray | None = None
+    pressure_before: FloatArray | None = None
+    pressure_after: FloatArray | None = None
     false: npt.NDArray[np.bool_] | None = None
     record: IntArray | None = None
     names: tuple[str, ...] = ()
@@ -93,10 +96,21 @@ def thin_together(lines: Sequence[FloatArray], points: int) -> IntArray:
 
 def busiest_window(series: Series, rows: int) -> slice:
     """The stretch of `rows` rows inside one recording, held out if possible, where the design model errs most."""
+    excess = np.nan_to_num(np.square(series.percent(series.position - series.before)))
+    return _busiest(series, excess - np.nan_to_num(np.square(series.percent(series.position - series.after))), rows)
+
+
+def busiest_pressure(series: Series, rows: int) -> slice:
+    """The same for the pressure, which has to be there."""
+    assert series.pressure is not None and series.pressure_before is not None and series.pressure_after is not None
+    excess = np.nan_to_num(np.square(series.pressure - series.pressure_before))
+    return _busiest(series, excess - np.nan_to_num(np.square(series.pressure - series.pressure_after)), rows)
+
+
+def _busiest(series: Series, excess: FloatArray, rows: int) -> slice:
+    """The stretch of `rows` rows inside one recording with the most `excess`; what is held out counts more."""
     n = series.time_s.size
     rows = min(rows, n)
-    excess = np.nan_to_num(np.square(series.percent(series.position - series.before)))
-    excess -= np.nan_to_num(np.square(series.percent(series.position - series.after)))
     total = np.concatenate([[0.0], np.cumsum(np.where(series.heldout, 1.0, 0.25) * excess)])
     gain = total[rows:] - total[:-rows]
     breaks = np.concatenate([[0], np.cumsum(series.starts)])
