@@ -6,6 +6,8 @@ the diagnosis is worth is measured on other physics (docs/blind.md).
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -14,7 +16,7 @@ from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record, judged
 from twin.catalog import effects
 from twin.choose.score import make_yardstick, student_log_likelihood, whitening_filter
-from twin.choose.weigh import Weights
+from twin.choose.weigh import Weights, weigh
 from twin.effect import Effect
 from twin.explain import typical_values
 from twin.fit.least_squares import descend, minimise
@@ -68,10 +70,22 @@ def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> Non
     plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], tuple(typical_values(effect.forms[0]))),))
     _, judgement = judged(a_record(plant))
     weights = Weights()
-    assert all(cause.probability <= weights.ceiling for cause in judgement.causes)
+    assert all(cause.probability <= weights.exact for cause in judgement.causes)
     assert {"sensor_lag", "additional_lag"} <= {name for names in judgement.confusable for name in names}
     lag = next(c for c in judgement.causes if c.name in ("sensor_lag", "additional_lag"))
-    assert lag.probability <= weights.ceiling
+    assert lag.probability <= weights.twin_ceiling
+
+
+def test_what_leaves_more_than_the_noise_is_less_sure() -> None:
+    """The same cause on the same record, once with nothing left of it and once with a fifth of the noise besides."""
+    effect = effects()["spring_asymmetry"]
+    plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], (0.08,)),))
+    decision = judged(a_record(plant))[0].decisions[-1]
+    assert decision.names == ("spring_asymmetry",)
+    weights = Weights()
+    worse = replace(decision, floor=decision.accepted.mse / 1.2)
+    assert weigh(decision, weights).probability["spring_asymmetry"] == weights.exact
+    assert weigh(worse, weights).probability["spring_asymmetry"] == weights.ceiling
 
 
 def test_whitening_takes_the_memory_out() -> None:

@@ -67,6 +67,10 @@ def _area_bow(c: Coefficients, values: Sequence[float]) -> None:
     _area(c, values[0] * bow(c.xi))
 
 
+def _area_slope_and_bow(c: Coefficients, values: Sequence[float]) -> None:
+    _area(c, values[0] * (c.xi - 0.5) + values[1] * bow(c.xi))
+
+
 def _stem_area(c: Coefficients, values: Sequence[float]) -> None:
     # k (p (1 + share) - a - x / k) is (1 + share) k (p - a / (1 + share)) - x
     larger = 1.0 + values[0] * (c.xi - 0.5)
@@ -103,7 +107,7 @@ EFFECT = Effect(
     claim="Compliance depends on position.",
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
     "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
-    "area_*: p (1 + area (xi - 1/2)), or p (1 + area 4 xi (1 - xi)), in place of p, xi = w/travel; stem_area: x/travel",
+    "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -113,6 +117,7 @@ EFFECT = Effect(
         Form("stem_slope", (_SLOPE,), _stem_slope),
         Form("area_slope", (_AREA,), _area_slope),
         Form("area_bow", (_AREA_MID,), _area_bow),
+        Form("area_slope_and_bow", (_AREA, replace(_AREA_MID, name="area_mid")), _area_slope_and_bow),
         Form("stem_area", (_AREA,), _stem_area),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
