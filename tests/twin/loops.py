@@ -52,6 +52,20 @@ def row_by_row(one: Plant) -> FloatArray:
     return np.array(got)
 
 
+def uneven_in_small_steps(asymmetry: float) -> FloatArray:
+    """A play between curves of k / (1 - asymmetry) closing and k / (1 + asymmetry) opening before a lag of the same."""
+    time_s = np.arange(0.0, TIME_S[-1] + SMALL_S, SMALL_S)
+    x, w, found = 0.0, 0.0, np.empty(time_s.size)
+    soft = (1.0 / (1.0 - asymmetry), 1.0 / (1.0 + asymmetry))
+    for k, p in enumerate(np.interp(time_s, TIME_S, PRESSURE)):
+        found[k] = x
+        bottom, top = soft[0] * D.compliance * (p - D.a1), soft[1] * D.compliance * (p - D.a2)
+        w = min(D.travel, max(0.0, bottom, min(top, w)))
+        speed = (w - x) / (D.tau_s * (soft[0] if w > x else soft[1]))
+        x += SMALL_S * max(-D.rate_limit, min(D.rate_limit, speed))
+    return np.interp(TIME_S, time_s, found)
+
+
 def in_small_steps(
     friction: str,
     drag: tuple[float, float] = (0.0, 0.0),

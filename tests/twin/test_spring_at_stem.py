@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from tests.twin.judged import a_record
-from tests.twin.loops import FRICTIONS, D, at_once, in_small_steps, plant, row_by_row
+from tests.twin.loops import FRICTIONS, D, at_once, in_small_steps, plant, row_by_row, uneven_in_small_steps
 from twin.diagnose import diagnose
 from twin.plant import Plant
 
@@ -21,6 +21,13 @@ def test_like_small_steps_of_its_law(friction: str, asymmetry: float) -> None:
     expected = in_small_steps(friction, asymmetry=asymmetry)
     assert np.max(np.abs(at_once(uneven(friction, asymmetry)) - expected)) < 0.005 * D.travel
     assert np.allclose(row_by_row(uneven(friction, asymmetry)), at_once(uneven(friction, asymmetry)), atol=1e-9)
+
+
+@pytest.mark.parametrize("asymmetry", [0.2, -0.15])
+def test_its_lags_go_with_it(asymmetry: float) -> None:
+    one = plant("before the lag", "spring_asymmetry", "with_lags", (asymmetry,))
+    assert np.max(np.abs(at_once(one) - uneven_in_small_steps(asymmetry))) < 0.004 * D.travel
+    assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
 def test_it_is_told_from_a_stiffness_of_what_pulls_the_stem() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.slots import V_TAU_CLOSE_S, V_TAU_OPEN_S
 
 
 def _asymmetry(doc: str) -> tuple[Parameter]:
@@ -34,8 +35,15 @@ def _hinged_mid(c: Coefficients, values: Sequence[float]) -> None:
     c.open_shift -= shift
 
 
+def _with_lags(c: Coefficients, values: Sequence[float]) -> None:
+    # A time constant is drag over stiffness.
+    _hinged_open(c, values)
+    c.valve[V_TAU_CLOSE_S] /= 1.0 - values[0]
+    c.valve[V_TAU_OPEN_S] /= 1.0 + values[0]
+
+
 def _at_stem(c: Coefficients, values: Sequence[float]) -> None:
-    # What the stem itself feels changes how fast it goes, too: a stiffer way has the shorter time constant.
+    # The same for friction in the force balance; a pull that a stop limits has pressure to spare.
     less = values[0] * c.xi * c.design.travel / c.design.compliance
     c.bend_at_stem(-less, less)
 
@@ -45,7 +53,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The compliance differs between closing and opening (k1 != k2).",
     equations="closing p = a1 + w/k1, opening p = a2 + w/k2, 1/k1 = (1 - asymmetry)/k, 1/k2 = (1 + asymmetry)/k; "
-    "at_stem: x in place of w where they differ from 1/k",
+    "with_lags: time constants in proportion to k1 and k2; at_stem: x in place of w where they differ from 1/k",
     source="Lustrino, MIT thesis (2009), section 2.1 (k1 and k2 measured, their mean used)",
     forms=(
         Form(
@@ -56,6 +64,7 @@ EFFECT = Effect(
         Form(
             "hinged_mid", _asymmetry("half the difference of the stiffnesses, deadband kept at mid travel"), _hinged_mid
         ),
+        Form("with_lags", _asymmetry("half the difference of the stiffnesses, felt in motion, too"), _with_lags),
         Form("at_stem", _asymmetry("half the difference of the stiffnesses that the stem feels"), _at_stem),
     ),
     twins=("position_dependent_friction",),
