@@ -26,10 +26,12 @@ def test_only_false_readings_are_not_drawn() -> None:
         before=rows,
         retuned=rows,
         after=rows,
-        pressures=None,
+        pressures=((rows[0] + 1.0,), (rows[0] + 2.0,)),
         gap=SimpleNamespace(after=np.where(trial.use_y, 0.0, np.nan)),
         result=SimpleNamespace(case=SimpleNamespace(trials=(trial,))),
     )
     series = series_of(outcome)  # type: ignore[arg-type]
     assert np.array_equal(np.isnan(series.percent(series.position)), false)
     assert np.array_equal(series.heldout, trial.use_y)
+    assert series.pressure_before is not None and series.pressure_after is not None
+    assert (series.pressure_before == 1.0).all() and (series.pressure_after == 2.0).all()
