@@ -40,10 +40,9 @@ DOUBTFUL = 1.6
 SLIGHT = 1.3
 #: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
 #: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
-#: That is forgiven where all of a record is explained to its noise (`EXACT`, mean square, noise = 1).
+#: That is forgiven where all of a record is explained to its noise.
 #: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
-EXACT = 1.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +156,7 @@ def _doubted(judgement: Judgement) -> bool:
 
 def explained_to_noise(result: StageResult) -> bool:
     """Whether what was accepted explains all of its signals to their noise."""
-    return all(d.accepted.mse <= EXACT * d.floor for d in result.decisions if d.names)
+    return all(d.exact for d in result.decisions if d.names)
 
 
 def shown_by_pressure(result: StageResult) -> tuple[str, ...]:

@@ -23,6 +23,8 @@ _SPARED = 0.5
 _BENT, _STRAIGHTER = 50.0, 0.2
 #: By how many unknowns a free curve exceeds a law.
 _FREE = 5
+#: Mean squared residual over the floor up to which a signal is explained to its noise.
+_EXACT = 1.1
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
 _ABOVE_BEST = 1.5
 
@@ -66,6 +68,11 @@ class Decision:
     @property
     def names(self) -> tuple[str, ...]:
         return self.accepted.names if self.explained else ()
+
+    @property
+    def exact(self) -> bool:
+        """Whether what was accepted leaves no more than the noise."""
+        return self.accepted.mse <= _EXACT * self.floor
 
     def rest_of(self, fit: Fit) -> float:
         """What `fit` leaves of the excess over the noise, as a share of the excess before."""

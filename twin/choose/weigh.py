@@ -25,14 +25,13 @@ _COMPANION = 3.0
 class Weights:
     """Chosen on the calibration bank. `temperature` divides score differences; `confusable` is the least odds of a twin
     against the accepted cause; `ceiling` is the highest probability ever claimed where something is left of the signal,
-    `exact` where its noise is all that is left (mean square, noise = 1, up to `noise`), `twin_ceiling` that of a cause
+    `exact` where its noise is all that is left, `twin_ceiling` that of a cause
     which no record of these signals can tell from another."""
 
     temperature: float = 10.0
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.97
-    noise: float = 1.1
     twin_ceiling: float = 0.6
 
 
@@ -54,8 +53,8 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     odds /= odds.sum()
     names = sorted({name for f in fits for name in f.names})
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
-    exact = decision.accepted.mse <= weights.noise * decision.floor
-    probability = {n: min(p, weights.exact if exact else weights.ceiling) for n, p in raw.items()}
+    ceiling = weights.exact if decision.exact else weights.ceiling
+    probability = {n: min(p, ceiling) for n, p in raw.items()}
     for name in decision.names:
         if twins_of(decision.accepted, name):
             probability[name] = min(probability[name], weights.twin_ceiling)
