@@ -7,6 +7,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.catalog import effect
+from twin.effect import Coefficients
 from twin.live.valve import Valve
 from twin.plant import Inserted, Plant, stem_response
 from twin.timegrid import make_grid
@@ -43,12 +44,17 @@ def at_once(one: Plant, step_s: float = 0.02) -> FloatArray:
 
 def row_by_row(one: Plant) -> FloatArray:
     """The same as the live twin has it."""
-    c, grid = one.coefficients(TIME_S[-1]), make_grid(TIME_S, 0.02)
-    fine, valve, got = np.interp(grid.fine_time_s, TIME_S, PRESSURE), Valve(c, 0.0, 0.0, 0.0), [0.0]
-    for i in range(1, TIME_S.size):
+    return advanced(one.coefficients(TIME_S[-1]), TIME_S, PRESSURE, 0.0)
+
+
+def advanced(c: Coefficients, time_s: FloatArray, pressure: FloatArray, start: float) -> FloatArray:
+    """The stem of the live twin on the rows, which it is given one by one."""
+    grid = make_grid(time_s, 0.02)
+    fine, valve, got = np.interp(grid.fine_time_s, time_s, pressure), Valve(c, 0.0, start, start), [start]
+    for i in range(1, time_s.size):
         block = slice(int(grid.offsets[i - 1]), int(grid.offsets[i]) + 1)
         ends = np.array([0, block.stop - 1 - block.start], dtype=np.int64)
-        got.append(float(valve.advance(TIME_S[i - 1 : i + 1], ends, fine[block])[-1]))
+        got.append(float(valve.advance(time_s[i - 1 : i + 1], ends, fine[block])[-1]))
     return np.array(got)
 
 

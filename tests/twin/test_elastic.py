@@ -11,9 +11,9 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray
+from tests.twin.loops import advanced
 from twin.catalog import effect
 from twin.kernels.elastic import SPRINGS, stretches
-from twin.live.valve import Valve
 from twin.plant import Inserted, Plant, stem_response
 from twin.slots import V_PRESLIDING, V_TAU_AFTER_S
 from twin.timegrid import make_grid
@@ -118,13 +118,7 @@ def test_row_by_row_it_is_the_same(change: Callable[[object], None]) -> None:
     grid = make_grid(TIME_S, 0.02)
     fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S), TIME_S, PRESSURE)
     want = stem_response(c, grid, fine, START, START)
-    valve = Valve(c, 0.0, START, START)
-    got = [START]
-    for i in range(1, TIME_S.size):
-        block = slice(int(grid.offsets[i - 1]), int(grid.offsets[i]) + 1)
-        rows = np.array([0, block.stop - 1 - block.start], dtype=np.int64)
-        got.append(float(valve.advance(TIME_S[i - 1 : i + 1], rows, fine[block])[-1]))
-    assert np.allclose(got, want[grid.offsets], atol=1e-9)
+    assert np.allclose(advanced(c, TIME_S, PRESSURE, START), want[grid.offsets], atol=1e-9)
 
 
 def test_there_are_many_short_springs_and_few_long_ones() -> None:

@@ -9,8 +9,8 @@ from scipy.optimize import brentq
 
 from control.design import DesignModel
 from logs.recording import FloatArray
+from tests.twin.loops import advanced
 from twin.catalog import effect
-from twin.live.valve import Valve
 from twin.plant import Inserted, Plant, stem_response
 from twin.timegrid import make_grid
 
@@ -71,10 +71,4 @@ def test_coarse_steps_stops_and_rows_make_no_difference() -> None:
     wide = np.where(TIME_S < 30.0, 14.0, 3.0)
     there = stem(one, pressure=wide)
     assert D.travel - 1e-4 < there.max() <= D.travel and 0.0 <= there.min() < 1e-4
-    c, grid = one.coefficients(60.0), make_grid(TIME_S, 0.02)
-    fine, valve, got = np.interp(grid.fine_time_s, TIME_S, PRESSURE), Valve(c, 0.0, X0, X0), [X0]
-    for i in range(1, TIME_S.size):
-        block = slice(int(grid.offsets[i - 1]), int(grid.offsets[i]) + 1)
-        ends = np.array([0, block.stop - 1 - block.start], dtype=np.int64)
-        got.append(float(valve.advance(TIME_S[i - 1 : i + 1], ends, fine[block])[-1]))
-    assert np.allclose(got, stem(one), atol=1e-9)
+    assert np.allclose(advanced(one.coefficients(60.0), TIME_S, PRESSURE, X0), stem(one), atol=1e-9)
