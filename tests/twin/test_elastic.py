@@ -29,8 +29,11 @@ START = 0.19 * (9.5 - 5.82)
 LONG = replace(DesignModel(), travel=2.0)
 
 
-def plant(presliding: float, in_motion: bool = True) -> Plant:
-    """The thesis's valve with friction in the force balance that turns over `presliding` [in]."""
+def plant(presliding: float, in_motion: bool = True, falling: tuple[float, float] | None = None) -> Plant:
+    """The thesis's valve with friction in the force balance that turns over `presliding` [in].
+
+    `falling`: by how much more of it there is at no speed [psi], and the speed at which 1/e of that is left [in/s].
+    """
     causes = [
         Inserted(
             "distributed_hysteresis", effect("distributed_hysteresis").form("turns_over_a_distance"), (presliding,)
@@ -38,6 +41,8 @@ def plant(presliding: float, in_motion: bool = True) -> Plant:
     ]
     if in_motion:
         causes.append(Inserted("friction_in_motion", effect("friction_in_motion").form("full"), ()))
+    if falling is not None:
+        causes.append(Inserted("stiction", effect("stiction").form("falling_with_speed"), falling))
     return Plant(LONG, causes)
 
 
@@ -48,16 +53,21 @@ def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSUR
     return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
 
 
-def stepped(reach: float, h: float = 1e-3) -> FloatArray:
-    """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops."""
+def stepped(reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3) -> FloatArray:
+    """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops.
+
+    The speed at which friction has fallen so far (`falling`) is the one that it has then: found by substitution.
+    """
     d, slips = LONG, stretches(reach)
-    held, x, rows = -slips, START, [START]
+    held, x, speed, rows = -slips, START, 0.0, [START]
     per = round((TIME_S[1] - TIME_S[0]) / h)
     for a, b in pairwise(PRESSURE):
         for k in range(per):
-            friction = 0.5 * d.deadband * float(np.mean(held / slips))
-            pull = d.compliance * (a + (b - a) * (k + 0.5) / per - d.offset - friction)
-            speed = np.clip((np.clip(pull, 0.0, d.travel) - x) / d.tau_s, -d.rate_limit, d.rate_limit)
+            turned, p = float(np.mean(held / slips)), a + (b - a) * (k + 0.5) / per
+            for _ in range(4 if falling[0] else 1):
+                friction = (0.5 * d.deadband + falling[0] * np.exp(-abs(speed) / falling[1])) * turned
+                pull = d.compliance * (p - d.offset - friction)
+                speed = np.clip((np.clip(pull, 0.0, d.travel) - x) / d.tau_s, -d.rate_limit, d.rate_limit)
             new = min(max(x + h * speed, 0.0), d.travel)
             held, x = np.clip(held + new - x, -slips, slips), new
         rows.append(x)
@@ -68,6 +78,14 @@ def stepped(reach: float, h: float = 1e-3) -> FloatArray:
 def test_like_springs_stepped_in_small_steps(reach: float) -> None:
     """Other formulation, same valve; started as after opening."""
     assert np.max(np.abs(stem(plant(reach)) - stepped(reach))) < 0.001 * 0.5625
+
+
+def test_it_falls_with_the_speed_as_in_small_steps() -> None:
+    """A stem whose friction grows as it slows down stops short; the springs hold it there."""
+    falling = (0.15, 0.03)
+    got, even = stem(plant(0.005, falling=falling)), stem(plant(0.005))
+    assert np.max(np.abs(got - stepped(0.005, falling))) < 0.001 * 0.5625
+    assert np.max(np.abs(got - even)) > 0.01 * 0.5625
 
 
 def test_short_springs_are_friction_in_motion() -> None:
@@ -109,10 +127,11 @@ def test_what_begins_at_rest_stays() -> None:
         assert np.max(np.abs(got - x0)) < 1e-4
 
 
+@pytest.mark.parametrize("falling", [None, (0.15, 0.01)])
 @pytest.mark.parametrize("change", [lambda c: None, lambda c: c.valve.__setitem__(V_TAU_AFTER_S, 0.2)])
-def test_row_by_row_it_is_the_same(change: Callable[[object], None]) -> None:
+def test_row_by_row_it_is_the_same(change: Callable[[object], None], falling: tuple[float, float] | None) -> None:
     """The live twin carries the springs from row to row, and so does the other loop beside what only that one knows."""
-    c = plant(0.06).coefficients(60.0)
+    c = plant(0.06, falling=falling).coefficients(60.0)
     change(c)
     assert c.valve[V_PRESLIDING] == 0.06
     grid = make_grid(TIME_S, 0.02)

@@ -21,6 +21,8 @@ from twin.slots import (
     V_RATE_OPEN,
     V_RELAX,
     V_RELAX_TAU_S,
+    V_STRIBECK,
+    V_STRIBECK_SPEED,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
     V_TRAVEL,
@@ -63,7 +65,7 @@ def elastic_start(
     The springs hold the stem where it is pulled to `w`, as after a stroke one way and the way back that this needs.
     """
     x = max(stops[2], min(stops[3], start[0]))
-    grid = (tables[0], 1.0 / tables[1])
+    grid, wide = (tables[0], 1.0 / tables[1]), wide + c[V_STRIBECK]
     bottom, top = _curve_at(force - wide, grid, tables[2]), _curve_at(force + wide, grid, tables[3])
     if bends[0].size > 1:
         place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
@@ -75,7 +77,7 @@ def elastic_start(
     way, back = (1.0 if friction >= 0.0 else -1.0), np.linspace(0.0, slips[-1], 129)
     shares = np.mean(np.clip(1.0 - back[:, None] / slips, -1.0, 1.0), axis=1)
     held = way * np.clip(slips - np.interp(-abs(friction), -shares, back), -slips, slips)
-    return np.array([x, 0.0, x]), np.ascontiguousarray(held)
+    return np.array([x, 0.0, x, 0.0]), np.ascontiguousarray(held)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -205,6 +207,7 @@ def elastic_steps(
     ends, varies = (stops[0], stops[1], stops[2], stops[3]), widening.size > 1
     lags_s, rates, wear = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN]), c[V_WEAR]
     drags_s = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S])
+    stribeck, fading, speed = c[V_STRIBECK], c[V_STRIBECK_SPEED], state[3]
     last_h, stays, drags, stay = -1.0, (0.0, 0.0), (0.0, 0.0), 1.0
     x, travelled, friction = state[0], state[1], _stretched(0.0, held, slips)
     out[0] = x
@@ -215,12 +218,14 @@ def elastic_steps(
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
             wide = widening[f if varies else 0] + wear * travelled
+            if stribeck > 0.0:
+                wide += stribeck * np.exp(-speed / fading)
             more, less, softer = _bend(x, place, more_at, less_at, softer_at)
             below, above = _curve_at(p - wide - more, grid, closing), _curve_at(p + wide - less, grid, opening)
             between = (softer * below, softer * above)
             out[f], free = _freely(x, h, between, ends, stays, drags, rates, friction)
             if not free:
                 out[f], friction = _held_step(x, h, between, ends, lags_s, drags_s, rates, held, slips, friction)
-            travelled += abs(out[f] - x)
+            travelled, speed = travelled + abs(out[f] - x), abs(out[f] - x) / h
             x, late = out[f], out[f] + (late - out[f]) * stay
-    state[0], state[1], state[2] = x, travelled, late
+    state[0], state[1], state[2], state[3] = x, travelled, late, speed

@@ -63,7 +63,7 @@ from twin.slots import (
 )
 
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
-_STIFF = [V_BREAKAWAY, V_STRIBECK, V_HELD, V_SHORT, V_TAU_AFTER_S]
+_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
@@ -114,7 +114,7 @@ def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]
 
     Friction that turns over a distance, or with the speed, has one of its own, except beside what only the other knows.
     """
-    if c[V_ROUNDED] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any():
+    if c[V_ROUNDED] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[[*_STIFF, V_STRIBECK]].any():
         return rounded_start, rounded_steps
     elastic = c[V_PRESLIDING] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any()
     return (elastic_start, elastic_steps) if elastic else (coupled_start, coupled_steps)
