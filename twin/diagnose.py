@@ -199,8 +199,10 @@ def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned:
         return case.base
     if judgement.verdict == "unexplained":
         return case.base if retuned is None else retuned.plant
-    found = result.plant() if {c.name for c in judgement.causes} - set(sensing.accepted) else case.base
-    return found.having(sensing.inserted())
+    named = {c.name for c in judgement.causes}
+    # what is only seen in events and has no fit brings nothing that was fitted beside it
+    fitted = named & set(result.causes) or named - set(sensing.accepted)
+    return (result.plant() if fitted else case.base).having(sensing.inserted())
 
 
 def _model(plant: Plant, case: Case) -> tuple[DesignModel, dict[str, dict[str, str]]]:

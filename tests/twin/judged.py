@@ -29,9 +29,9 @@ def _command(n: int) -> FloatArray:
     return np.concatenate(levels)[:n]
 
 
-def a_record(plant: Plant, seed: int = 1, twice: bool = False) -> Recording:
-    """Eight minutes of noisy readings; `twice`: the second half has the commands of the first."""
-    n, period_s = 2400, 0.2
+def a_record(plant: Plant, seed: int = 1, twice: bool = False, n: int = 1500) -> Recording:
+    """Five minutes of noisy readings, in `n` rows; `twice`: the second half has the commands of the first."""
+    period_s = 0.2
     blank = np.zeros(n)
     command = np.tile(_command(n // 2), 2) if twice else _command(n)
     record = Recording("valve", np.arange(n) * period_s, command, blank, np.full(n, 4.0))

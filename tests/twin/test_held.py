@@ -15,6 +15,7 @@ from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
+from twin.diagnose import Settings, diagnose
 from twin.plant import Inserted, Plant, reading_response
 from twin.refresh import fresh_rows, freshness, refreshed_together
 from twin.simulate import simulate_recording
@@ -39,7 +40,7 @@ def held(reading: FloatArray, seed: int = 3) -> FloatArray:
 @pytest.fixture(scope="module")
 def stale() -> Recording:
     """A creeping valve whose reading is held."""
-    record = a_record(Plant(DesignModel(), (CREEP,)), twice=True)
+    record = a_record(Plant(DesignModel(), (CREEP,)), twice=True, n=2400)
     return replace(record, position=held(record.position))
 
 
@@ -69,6 +70,16 @@ def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None
     assert set(result.causes) == {"creep", "stale_samples"}
     [creep] = [one for one in result.plant().inserted if one.effect == "creep"]
     assert creep.values[0] == pytest.approx(0.05, abs=0.01)
+
+
+def test_the_updated_model_holds_the_readings_of_another_record() -> None:
+    """What is seen in events and fitted as well is in the model: a record that it has not met has its own refreshes."""
+    healthy = a_record(Plant(DesignModel()))
+    met, fresh = (replace(healthy, position=held(healthy.position, seed)) for seed in (3, 4))
+    outcome = diagnose([met], DesignModel(), (), Settings(search=SearchRules(most=1)))
+    assert [c.name for c in outcome.diagnosis.causes] == ["stale_samples"]
+    before, after = (simulate_recording(model, fresh)[1] for model in (DesignModel(), outcome.model))
+    assert np.std(fresh.position - after) < 0.1 * np.std(fresh.position - before)
 
 
 def test_a_look_at_part_of_the_rows_knows_when_they_were_fresh(stale: Recording) -> None:
