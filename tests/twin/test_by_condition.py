@@ -45,7 +45,7 @@ def apart(result: StageResult) -> Gap | None:
 
 @pytest.fixture(scope="module")
 def creeping() -> StageResult:
-    return searched(halves(a_record(CREEP)))
+    return searched(halves(a_record(CREEP, n=2400)))
 
 
 def test_a_true_cause_carries_over_to_commands_that_no_fit_has_met(creeping: StageResult) -> None:
@@ -70,7 +70,7 @@ def test_a_floor_with_motion_in_it_is_as_doubtful_here_as_elsewhere(creeping: St
 def test_what_was_judged_on_a_look_predicts_all_rows(monkeypatch: pytest.MonkeyPatch, creeping: StageResult) -> None:
     monkeypatch.setattr(thin, "MOST_ROWS", 2000)
     monkeypatch.setattr(thin, "LOOK_ROWS", 1800)
-    result = searched(halves(a_record(CREEP)))
+    result = searched(halves(a_record(CREEP, n=2400)))
     assert result.case.everything is not result.case
     found, whole = apart(result), apart(creeping)
     assert found is not None and whole is not None
@@ -79,10 +79,10 @@ def test_what_was_judged_on_a_look_predicts_all_rows(monkeypatch: pytest.MonkeyP
 
 
 def test_repeats_are_one_condition_and_one_condition_gives_no_answer() -> None:
-    once, again = halves(a_record(CREEP, twice=True))
+    once, again = halves(a_record(CREEP, twice=True, n=2400))
     again = replace(again, time_s=again.time_s - again.time_s[0] + once.time_s[0])
     assert apart(unsearched([once, again])) is None
-    other = a_record(CREEP, seed=3)
+    other = a_record(CREEP, seed=3, n=2400)
     assert apart(unsearched([once, again, replace(other, command=17.0 - other.command[::-1])])) is not None
 
 

@@ -102,7 +102,7 @@ def test_part_of_the_rows_keeps_what_is_known_of_them() -> None:
 
 
 def test_the_answer_gives_the_period_of_the_clock_and_what_was_fitted() -> None:
-    record = a_record(Plant(DesignModel()))
+    record = a_record(Plant(DesignModel()), n=2400)
     t = record.time_s - record.time_s[0]
     stale = replace(record, position=np.interp(np.maximum(taken(t, 0.8838, 0.31), 0.0), t, record.position))
     case = make_case([stale], DesignModel(), held=True)

@@ -49,7 +49,7 @@ def test_a_code_that_chance_left_out_is_not_missing() -> None:
 
 @pytest.mark.parametrize("every", [3, 5])
 def test_nothing_else_is_named_for_missing_codes(every: int) -> None:
-    made = a_record(Plant(DesignModel()))
+    made = a_record(Plant(DesignModel()), n=2400)
     record = replace(made, position=read(made.position, every))
     assert not scan_events(record, estimate_noise([record])).false_position.any()
     diagnosis = diagnose([record], DesignModel()).diagnosis
@@ -59,7 +59,7 @@ def test_nothing_else_is_named_for_missing_codes(every: int) -> None:
 
 @pytest.mark.parametrize("up", [False, True])
 def test_the_error_of_the_zero_that_missing_codes_make_is_no_calibration(up: bool) -> None:
-    made = a_record(Plant(DesignModel()))
+    made = a_record(Plant(DesignModel()), n=2400)
     record = replace(made, position=read(made.position, 3, up))
     sensing = sense([record], estimate_noise([record]), DesignModel().travel, DesignModel().rate_limit)
     (found,) = rounding_down([record], Plant(DesignModel()), sensing)

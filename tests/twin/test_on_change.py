@@ -107,7 +107,7 @@ def test_the_model_reports_as_the_valve_did_or_by_its_band() -> None:
 
 
 def test_two_recordings_have_to_agree_about_the_band() -> None:
-    plain, held = a_record(Plant(DESIGN)), reported(a_record(Plant(DESIGN)))
+    plain, held = a_record(Plant(DESIGN), n=2400), reported(a_record(Plant(DESIGN), n=2400))
     noise = estimate_noise([plain])
 
     def band(*records: Recording) -> float:

@@ -112,7 +112,7 @@ def test_a_jump_in_each_recording_is_found_wherever_it_is(at_s: float) -> None:
     """Too far from every start it would leave so much that a drift explained it better."""
     drift = effect("lvdt_drift")
     plant = with_form("lvdt_drift", "jump_each", 0.015, at_s)
-    case = make_case([a_record(plant, seed=seed) for seed in (1, 2)], DESIGN, ())
+    case = make_case([a_record(plant, seed=seed, n=2400) for seed in (1, 2)], DESIGN, ())
     channel = position_channel(driven_about(case.base, case), case.sigma_y)
     cause = Cause(drift.name, drift, drift.form("jump_each"))
     space = make_space(case.base, (cause,), channel.numbers, case.scales)

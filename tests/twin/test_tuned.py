@@ -31,5 +31,5 @@ def test_a_late_sensor_does_not_bend_the_converter_whose_pressure_was_measured()
 
 
 def test_a_record_that_rests_at_both_stops_gives_the_travel() -> None:
-    found = tuned_to([a_record(Plant(DesignModel()))], DesignModel(travel=0.6))
+    found = tuned_to([a_record(Plant(DesignModel()), n=2400)], DesignModel(travel=0.6))
     assert found.travel == pytest.approx(0.5625, rel=0.003)
