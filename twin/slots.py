@@ -86,7 +86,8 @@ V_DRAG_CLOSE_S = 42  # what drag adds to the lag of a stem that closes, as long 
 V_DRAG_OPEN_S = 43  # and of one that opens
 V_RELAX = 44  # pressure for each distance of the stem that a spring at first takes and then lets go [pressure/position]
 V_RELAX_TAU_S = 45
-V_COUNT = 46
+V_ON_STEM = 46  # compliance, if what friction grows by holds the stem off its target [position/pressure]; 0: play grows
+V_COUNT = 47
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -120,7 +121,9 @@ S_LATE_S = S_BAND + 1  # how long a reading waits behind the clock that shows in
 S_OTHER = S_LATE_S + 1  # excess at the open end of a core that leaves its range at both [fraction of travel]
 S_JUMP = S_OTHER + 1  # by how much the zero jumps [position], and when [s]
 S_JUMP_S = S_JUMP + 1
-S_COUNT = S_JUMP_S + 1
+S_WINDOW_S = S_JUMP_S + 1  # over how long the reading is averaged [s]; 0: it is not
+S_WINDOWS = S_WINDOW_S + 1  # how often, one after the other
+S_COUNT = S_WINDOWS + 1
 
 FOREVER = 1e30
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_STEP, V_STEP_TIME_S, V_WEAR
+from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_ON_STEM, V_STEP, V_STEP_TIME_S, V_WEAR
 
 _RATE = Parameter(
     name="rate",
@@ -92,12 +92,35 @@ def _sudden(c: Coefficients, values: Sequence[float]) -> None:
         c.valve[V_STEP], c.valve[V_STEP_TIME_S] = values[0], when_s
 
 
+def _on_stem(c: Coefficients, grown: float) -> None:
+    """What friction has grown by, and `grown` before this recording [pressure], holds the stem, not what pulls it."""
+    c.valve[V_ON_STEM] = c.design.compliance
+    c.valve[V_STEP], c.valve[V_STEP_TIME_S] = grown, 0.0
+
+
+def _linear_on_stem(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_DRIFT_RATE] = values[0]
+    _on_stem(c, values[0] * c.since_s)
+
+
+def _warm_up_on_stem(c: Coefficients, values: Sequence[float]) -> None:
+    left = c.to_come(*values)
+    c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = left, values[1]
+    _on_stem(c, values[0] - left)
+
+
+def _wear_on_stem(c: Coefficients, values: Sequence[float]) -> None:
+    _wear(c, values)
+    _on_stem(c, 0.0)
+
+
 EFFECT = Effect(
     name="friction_drift",
     stage="actuator",
     claim="The deadband changes with time.",
     equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step; "
-    "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own",
+    "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own; "
+    "on_stem: what it has grown by, s, does not widen the play but keeps the stem short: |w - x| less k s pulls it",
     source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
     forms=(
         Form("linear", (_RATE,), _linear),
@@ -105,6 +128,9 @@ EFFECT = Effect(
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
+        Form("linear_on_stem", (_RATE,), _linear_on_stem),
+        Form("warm_up_on_stem", (_CHANGE, _SETTLING), _warm_up_on_stem),
+        Form("wear_on_stem", (_WEAR,), _wear_on_stem),
     ),
     drifts=True,
     twins=("lvdt_drift",),

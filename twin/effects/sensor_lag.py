@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.lags import lag_parameter
-from twin.slots import S_LAG2_S, S_LAG_S
+from twin.slots import S_LAG2_S, S_LAG_S, S_WINDOW_S, S_WINDOWS
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -18,6 +18,14 @@ def _twice(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_LAG2_S] += 0.5 * values[0]
 
 
+def _mean(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_WINDOW_S], c.sensor[S_WINDOWS] = 2.0 * values[0], float(values[0] > 0.0)
+
+
+def _mean_twice(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_WINDOW_S], c.sensor[S_WINDOWS] = values[0], 2.0 * float(values[0] > 0.0)
+
+
 def _lag(doc: str) -> tuple[Parameter]:
     return lag_parameter(doc, usual=(0.1, 3.0))
 
@@ -26,11 +34,15 @@ EFFECT = Effect(
     name="sensor_lag",
     stage="sensor",
     claim="The reading is low-pass filtered.",
-    equations="dy/dt = (x - y) / lag; two_poles: half the lag, twice over, one behind the other",
-    source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments",
+    equations="dy/dt = (x - y) / lag; two_poles: half the lag, twice over, one behind the other; "
+    "running_mean: the mean over the last 2 lag; running_mean_twice: over the last lag, and that once more",
+    source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments; "
+    "Oppenheim, Schafer, Discrete-Time Signal Processing, 3rd ed. (Pearson 2010), moving average",
     forms=(
         Form("first_order", _lag("time constant of the filter"), _apply),
         Form("two_poles", _lag("time constants of the two equal poles together"), _twice),
+        Form("running_mean", _lag("mean delay of the reading, half the window that it is averaged over"), _mean),
+        Form("running_mean_twice", _lag("mean delay of the reading, the window that it is averaged over"), _mean_twice),
     ),
     twins=("additional_lag", "dead_time"),
     absorbs=("tau",),

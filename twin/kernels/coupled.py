@@ -1,9 +1,8 @@
 """Play and stem in one loop, for effects in which the target depends on how the stem moves.
 
-Friction inside the force balance, breakaway with a stick speed, friction that falls or grows with speed, wear with
-distance, a spring that relaxes, forces that depend on where the stem is (not on where it is pulled to).
-The small functions stand here once more on purpose: a compiled cache notices edits of its own file only. They are given
-numbers, no arrays: what an array is handed to counts references, each step, which cost more than all the physics.
+Friction in the force balance or on the stem, breakaway, friction that falls or grows with speed, wear, a spring that
+relaxes, forces by where the stem is. Small functions stand here once more on purpose: a compiled cache notices edits
+of its own file only. They are given numbers: an array counts references, each step, which cost more than the physics.
 """
 
 from __future__ import annotations
@@ -21,6 +20,8 @@ from twin.slots import (
     V_DRAG_OPEN_S,
     V_HELD,
     V_IN_MOTION,
+    V_ON_STEM,
+    V_OUTER,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_RELAX,
@@ -158,6 +159,7 @@ def coupled_start(
     grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
     elements = np.full(plays[0].size, start[1])
     x = max(stops[2], min(stops[3], start[0]))
+    wide = min(wide, -c[V_OUTER]) if c[V_ON_STEM] > 0.0 else wide
     more = less = wide + (c[V_STRIBECK] if c[V_STRIBECK] > 0.0 else 0.0)
     softer = 1.0
     if bends[0].size > 1:
@@ -194,7 +196,6 @@ def coupled_steps(
     `state`: stem, play output, that output lagged, whether it sticks, speed, last way, distance travelled, time stuck
     [s], by how much what pulls the stem is beyond the stops, where the spring is that has relaxed.
     """
-    # Arrays are taken out of their tuples, and numbers out of arrays, once: in the loop it would count references.
     grid, closing, opening = (tables[0], 1.0 / tables[1]), tables[2], tables[3]
     (spreads, weights), (more_at, less_at, softer_at) = plays, bends
     bent, varies, place = more_at.size > 1, widening.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
@@ -204,7 +205,7 @@ def coupled_steps(
     stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
     x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
     speed, toward, travelled, rested, over = state[4], state[5], state[6], state[7], state[8]
-    out[0] = x
+    out[0], on_stem, outer = x, c[V_ON_STEM], c[V_OUTER]
     last_h, (lags, drags, lates, stay) = -1.0, _lags(1.0, c)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
@@ -212,7 +213,9 @@ def coupled_steps(
             last_h, (lags, drags, lates, stay) = h, _lags(h, c)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             fades = np.exp(-speed / fading) if stribeck > 0.0 or short > 0.0 else 0.0
-            more, softer = widening[f if varies else 0] + wear * travelled + stribeck * fades, 1.0
+            wide = widening[f if varies else 0] + wear * travelled
+            rubs, wide = on_stem * max(0.0, wide + outer), min(wide, -outer) if on_stem > 0.0 else wide
+            more, softer = wide + stribeck * fades, 1.0
             more, less = more + relax * (x - late), more - relax * (x - late)
             if bent:
                 more, less = more + _curve_at(x, place, more_at), less - _curve_at(x, place, less_at)
@@ -231,7 +234,7 @@ def coupled_steps(
                 slipped = slipped or slips
                 new_w, new_over = new_w + weights[j] * elements[j], new_over + weights[j] * (reach - elements[j])
             new_after = _toward(after, w, new_w, lates)
-            pulls = _left(after, x, short * fades), _left(new_after, x, short * fades)
+            pulls = _left(after, x, short * fades + rubs), _left(new_after, x, short * fades + rubs)
             way = 0 if after + new_after > 2.0 * x else 1
             new = _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drags[way])
             new = max(lowest, min(highest, max(x - rates[1] * h, min(x + rates[0] * h, new))))

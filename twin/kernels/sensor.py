@@ -1,6 +1,6 @@
 """The position sensor: stem on the fine grid in, reading at the sample instants out.
 
-Order of the parts: linkage play, curvature, gain and zero with drift, low-pass, refresh (hold), resolution.
+Order of the parts: linkage play, curvature, gain and zero with drift, low-pass, mean, refresh (hold), resolution.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from scipy.interpolate import CubicSpline
 
 from logs.recording import FloatArray
 from twin.kernels.lag import elapsed_s, lagged
+from twin.kernels.mean import running_mean
 from twin.kernels.play import plain_play
 from twin.slots import (
     KNOTS,
@@ -39,6 +40,8 @@ from twin.slots import (
     S_SWING,
     S_TRAVEL,
     S_WANDER_S,
+    S_WINDOW_S,
+    S_WINDOWS,
     S_ZERO,
 )
 
@@ -56,10 +59,12 @@ def sensor_kernel(
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
         plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
-    if max(c[S_LAG_S], c[S_LAG2_S]) > 0.0:
+    if max(c[S_LAG_S], c[S_LAG2_S], c[S_WINDOW_S]) > 0.0:
         t = elapsed_s(time_s, offsets)
         late = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])
         late = lagged(time_s, offsets, late, c[S_LAG2_S])
+        for _ in range(int(c[S_WINDOWS])):
+            late = running_mean(t, late, c[S_WINDOW_S])
         out[:] = late[offsets] if taken_s is None else np.interp(taken_s, t, late)
     elif taken_s is None:
         out[:] = static_reading(core[offsets], time_s - time_s[0], c)

@@ -40,6 +40,7 @@ from twin.slots import (
     V_IN_MOTION,
     V_INERTIA_S,
     V_LOW,
+    V_ON_STEM,
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
@@ -62,8 +63,9 @@ from twin.slots import (
     stem_stops,
 )
 
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
-_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S]
+_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S, V_ON_STEM]
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_ON_STEM]
+_COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))

@@ -11,7 +11,8 @@ from logs.recording import FloatArray
 from twin.kernels.play import plain_play
 from twin.kernels.sensor import static_reading
 from twin.live.lag import Lag
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG2_S, S_LAG_S, S_PLAY, S_STEP
+from twin.live.mean import Mean
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG2_S, S_LAG_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
 
 
 class Sensor:
@@ -26,6 +27,7 @@ class Sensor:
         half = 0.5 * float(c[S_PLAY])
         self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
         self._lag, self._further = Lag(float(c[S_LAG_S])), Lag(float(c[S_LAG2_S]))
+        self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
         self._rows: deque[tuple[float, float]] = deque(
             [(0.0, float(self._static(np.array([self._core]), np.zeros(1))[0]))]
         )
@@ -44,9 +46,12 @@ class Sensor:
             self._core = float(core[-1])
             stem = core
         t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
-        if max(c[S_LAG_S], c[S_LAG2_S]) > 0.0:
+        if max(c[S_LAG_S], c[S_LAG2_S], c[S_WINDOW_S]) > 0.0:
             late = self._lag.follow(time_s, offsets, self._static(stem, t))
-            value = float(self._further.follow(time_s, offsets, late)[-1])
+            late = self._further.follow(time_s, offsets, late)
+            for mean in self._means:
+                late = mean.follow(t, late)
+            value = float(late[-1])
         else:
             value = float(self._static(stem[-1:], t[-1:])[0])
         if c[S_HOLD_S] > 0.0:

@@ -1,0 +1,32 @@
+"""A running mean that carries what it still needs from one row to the next, on top of `twin/kernels/mean.py`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from logs.recording import FloatArray
+from twin.kernels.mean import integral
+
+
+class Mean:
+    """Feeds blocks of fine points, each beginning with the last point of the block before, through one running mean."""
+
+    __slots__ = ("_t", "_whole", "_window_s")
+
+    def __init__(self, window_s: float) -> None:
+        self._window_s = window_s
+        self._t, self._whole = np.empty(0), np.empty(0)
+
+    def follow(self, t: FloatArray, values: FloatArray) -> FloatArray:
+        """The mean over the window at the points `t` [s] of the block, shape of `values`."""
+        if self._window_s <= 0.0:
+            return values
+        if not self._t.size:  # as it was at first, so it had been for the window before
+            self._t = np.array([t[0] - self._window_s, t[0]])
+            self._whole = np.array([-self._window_s * values[0], 0.0])
+        block = self._whole[-1] + integral(t, values)
+        self._t, self._whole = np.append(self._t, t[1:]), np.append(self._whole, block[1:])
+        mean = (block - np.interp(t - self._window_s, self._t, self._whole)) / self._window_s
+        used = max(0, int(np.searchsorted(self._t, t[-1] - self._window_s)) - 1)
+        self._t, self._whole = self._t[used:], self._whole[used:]
+        return np.asarray(mean)
