@@ -104,6 +104,17 @@ def test_a_period_inside_one_record_is_a_repeat() -> None:
     assert robust_sigma(difference) == pytest.approx(SIGMA, rel=0.12)
 
 
+def test_a_sine_is_laid_over_itself_to_a_part_of_a_row() -> None:
+    """Half a row off, what moves differs by ten times its noise."""
+    t = np.arange(0.0, 400.0, DT)
+    dice, period_s = np.random.default_rng(4), 41.2345
+    swing = np.sin(2.0 * np.pi * t / period_s) + 0.4 * np.sin(6.0 * np.pi * t / period_s + 1.0)
+    one = Recording("sines", t, 8.0 + 3.0 * swing, 0.25 + 0.2 * swing + dice.normal(0.0, SIGMA, t.size), None)
+    (pair,) = find_repeats([one])
+    assert pair.shift_s % period_s == pytest.approx(0.0, abs=0.06 * DT)
+    assert estimate_noise([one]).position.sigma == pytest.approx(SIGMA, rel=0.15)
+
+
 def test_a_repeat_is_found_behind_a_stroke_that_is_not_repeated() -> None:
     stroke, sweep = staircase(DT, 20.0, [12.0, 4.0, 6.5]), staircase(DT, 15.0, LEVELS[:6])
     command = np.concatenate([stroke, sweep, np.full(80, 4.5), sweep])

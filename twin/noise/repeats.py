@@ -7,7 +7,7 @@ repeat. Deterministic disturbances common to both cancel and must be judged else
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +20,8 @@ _LEAST_SHARE = 0.5  # of the rows that lie over each other
 _LEAST_S = 10.0
 _LEAST_ROWS = 100
 _MAX_PAIRS = 40
+_MOVES = 0.5  # share of rows in which the command changes, from which on it says more exactly when it was repeated
+_PARTS = 20  # of a row, by which that is looked for
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +133,24 @@ def _checked(first: Recording, second: Recording, shift_s: float) -> RepeatPair 
     begin, end = _longest((here >= low - slack) & (here <= high + slack))
     if end - begin < max(least, _LEAST_SHARE * rows.size):
         return None
-    return RepeatPair(first, second, slice(span.start + begin, span.start + end), shift_s)
+    return _between_rows(RepeatPair(first, second, slice(span.start + begin, span.start + end), shift_s))
+
+
+def _between_rows(pair: RepeatPair) -> RepeatPair:
+    """The pair with its shift to a fraction of a row, where the command tells: a sine's period is no whole number of
+    rows, and what moves by a part of a row differs by more than its noise.
+    """
+    here = pair.first.command[pair.rows]
+    if np.count_nonzero(np.diff(here)) < _MOVES * here.size:
+        return pair
+    at, row_s = pair.first.time_s[pair.rows] + pair.shift_s, pair.second.period_s
+    parts = row_s * np.arange(-_PARTS, _PARTS + 1) / _PARTS
+    misses = [
+        float(np.mean((np.interp(at + part, pair.second.time_s, pair.second.command) - here)[1:-1] ** 2))
+        for part in parts
+    ]
+    best = int(np.argmin(misses))
+    return replace(pair, shift_s=pair.shift_s + float(parts[best])) if misses[best] < 0.5 * misses[_PARTS] else pair
 
 
 def _longest(agree: npt.NDArray[np.bool_]) -> tuple[int, int]:
