@@ -2,24 +2,23 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.case import Case
-from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.reform import lays_open
 from twin.choose.trim import LIKELY, belief
 from twin.closure import rms
-from twin.diagnosis import Cause, Verdict
+from twin.diagnosis import Verdict
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import make_space
 from twin.heldout import predict_heldout
+from twin.remainder import CLEAR, SLIGHT, leaves_too_much
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement, verdict_of
@@ -36,13 +35,6 @@ IDLE = 1.03
 HARDLY = 1.1
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
-#: ... and one that misses by less has none worth a word, when its only cause was taken back.
-SLIGHT = 1.3
-#: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
-#: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
-#: That is forgiven where all of a record is explained to its noise.
-#: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap.
-CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +124,7 @@ def upheld(
             return parts, left
         verdict: Verdict = "unexplained" if disturbed else "no_gap"
         return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
-    if vain or _leaves(before, after, wandering**0.5 * floor, judgement.causes, apart, exact):
+    if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
         return _unexplained(parts, judgement)
     return parts, judgement
 
@@ -166,21 +158,6 @@ def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
     """
     pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
     return tuple(name for d in pressure if d.findings.none.mse > CLEAR**2 * d.floor for name in d.names)
-
-
-def _leaves(before: float, after: float, floor: float, causes: Sequence[Cause], apart: bool, exact: bool) -> bool:
-    """Whether the causes leave too much of the gap where no fit has seen it."""
-    left, gap = after**2 - floor**2, before**2 - floor**2
-    if before <= CLEAR * floor:
-        # a cause before a measured pressure has that to show for itself
-        behind = any(not apart or c.stage != "ep" for c in causes)
-        return behind and before > SLIGHT * floor and left > ERRATIC * gap
-    known = effects()
-    erratic = any(c.name in known and known[c.name].erratic for c in causes)
-    several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
-    many = any(len(c.parameters) > FREE for c in causes) and not exact
-    share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
-    return left > share * gap
 
 
 def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:

@@ -58,6 +58,15 @@ def test_a_cause_before_a_measured_pressure_is_not_judged_by_what_a_slight_gap_l
     assert upheld(parts(1.8, 1.9, 1.3), supply, 1.0, NOTHING_SEEN, apart)[1].verdict == verdict
 
 
+@pytest.mark.parametrize(("shown", "verdict"), [(("dead_time",), "effect"), ((), "unexplained")])
+def test_the_pressure_may_speak_for_a_cause_that_leaves_a_tenth_of_a_clear_gap(
+    shown: tuple[str, ...], verdict: str
+) -> None:
+    late = replace(NAMED, causes=(Named("dead_time", "ep", 0.9, None, {}),))
+    assert upheld(parts(10.0, 9.0, 3.4), late, 1.0, NOTHING_SEEN, True, shown=shown)[1].verdict == verdict
+    assert upheld(parts(10.0, 9.0, 6.0), late, 1.0, NOTHING_SEEN, True, shown=shown)[1].verdict == "unexplained"
+
+
 @pytest.mark.parametrize(("disturbed", "verdict"), [(False, "no_gap"), (True, "unexplained")])
 def test_a_disturbance_is_a_gap_also_where_no_cause_is_needed(disturbed: bool, verdict: str) -> None:
     judgement = upheld(parts(0.9, 0.9, 0.5), NAMED, 1.0, NOTHING_SEEN, True, 1.0, disturbed)[1]

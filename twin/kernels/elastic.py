@@ -200,26 +200,27 @@ def elastic_steps(
     held: FloatArray,
     out: FloatArray,
 ) -> None:
-    """Fills `out` (fine) with the stem and moves `state` (stem, distance travelled, relaxed spring) and `held` on."""
+    """Fills `out` (fine) with the stem and moves `state` (stem, way travelled, relaxed spring, speed) and `held` on."""
     (closing, opening), (more_at, less_at, softer_at) = tables[2:], bends
-    slips, grid = stretches(c[V_PRESLIDING]), (tables[0], 1.0 / tables[1])
-    place, late = (0.0, (more_at.size - 1) / c[V_TRAVEL]), state[2]
-    ends, varies = (stops[0], stops[1], stops[2], stops[3]), widening.size > 1
-    lags_s, rates, wear = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN]), c[V_WEAR]
+    ends, slips, grid = (
+        (stops[0], stops[1], stops[2], stops[3]),
+        stretches(c[V_PRESLIDING]),
+        (tables[0], 1.0 / tables[1]),
+    )
+    place, late, varies = (0.0, (more_at.size - 1) / c[V_TRAVEL]), state[2], widening.size > 1
+    lags_s, rates = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
+    wear, stribeck, fading = c[V_WEAR], c[V_STRIBECK], c[V_STRIBECK_SPEED]
     drags_s = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S])
-    stribeck, fading, speed = c[V_STRIBECK], c[V_STRIBECK_SPEED], state[3]
-    last_h, stays, drags, stay = -1.0, (0.0, 0.0), (0.0, 0.0), 1.0
-    x, travelled, friction = state[0], state[1], _stretched(0.0, held, slips)
-    out[0] = x
+    last_h, stays, drags, stay, out[0] = -1.0, (0.0, 0.0), (0.0, 0.0), 1.0, state[0]
+    x, travelled, speed, friction = state[0], state[1], state[3], _stretched(0.0, held, slips)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
             last_h, stays, drags, stay = h, _decays(h, lags_s), _decays(h, drags_s), np.exp(-h / c[V_RELAX_TAU_S])
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
-            wide = widening[f if varies else 0] + wear * travelled
-            if stribeck > 0.0:
-                wide += stribeck * np.exp(-speed / fading)
+            slow = stribeck * np.exp(-speed / fading) if stribeck > 0.0 else 0.0
+            wide = widening[f if varies else 0] + wear * travelled + slow
             more, less, softer = _bend(x, place, more_at, less_at, softer_at)
             below, above = _curve_at(p - wide - more, grid, closing), _curve_at(p + wide - less, grid, opening)
             between = (softer * below, softer * above)

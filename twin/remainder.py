@@ -1,0 +1,45 @@
+"""How much of a gap causes may leave where no fit has seen it, and explain it all the same."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Collection, Sequence
+
+from twin.catalog import effects
+from twin.diagnosis import Cause
+
+#: Of the noise; a design that misses by less has no gap worth a word, when its only cause was taken back.
+SLIGHT = 1.3
+#: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
+#: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
+#: That is forgiven where all of a record is explained to its noise.
+#: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap, and those
+#: of the converter for which the measured pressure speaks.
+CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
+
+
+def leaves_too_much(
+    before: float,
+    after: float,
+    floor: float,
+    causes: Sequence[Cause],
+    apart: bool,
+    exact: bool,
+    shown: Collection[str] = (),
+) -> bool:
+    """Whether the causes leave too much of the gap; errors [any unit] before and after, and the noise under them.
+
+    `apart`, `exact`, `shown`: as in `twin.gap.upheld`.
+    """
+    left, gap = after**2 - floor**2, before**2 - floor**2
+    if before <= CLEAR * floor:
+        # a cause before a measured pressure has that to show for itself
+        behind = any(not apart or c.stage != "ep" for c in causes)
+        return behind and before > SLIGHT * floor and left > ERRATIC * gap
+    known = effects()
+    erratic = any(c.name in known and known[c.name].erratic for c in causes)
+    erratic = erratic or all(c.name in shown for c in causes)
+    several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
+    many = any(len(c.parameters) > FREE for c in causes) and not exact
+    share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
+    return left > share * gap
