@@ -150,12 +150,12 @@ def _decays(h: float, lags_s: tuple[float, float]) -> tuple[float, float]:
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _bend(
-    x: float, place: tuple[float, float], more: FloatArray, less: FloatArray, softer: FloatArray
+    x: float, p: float, wide: float, place: tuple[float, float], more: FloatArray, less: FloatArray, softer: FloatArray
 ) -> tuple[float, float, float]:
-    """Extra pressure closing and opening, and relative compliance, where the stem is."""
+    """Pressure on the closing and on the opening curve, and relative compliance, where the stem is."""
     if more.size < 2:
-        return 0.0, 0.0, 1.0
-    return _curve_at(x, place, more), _curve_at(x, place, less), _curve_at(x, place, softer)
+        return p - wide, p + wide, 1.0
+    return p - wide - _curve_at(x, place, more), p + wide - _curve_at(x, place, less), _curve_at(x, place, softer)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -201,18 +201,13 @@ def elastic_steps(
     out: FloatArray,
 ) -> None:
     """Fills `out` (fine) with the stem and moves `state` (stem, way travelled, relaxed spring, speed) and `held` on."""
-    (closing, opening), (more_at, less_at, softer_at) = tables[2:], bends
-    ends, slips, grid = (
-        (stops[0], stops[1], stops[2], stops[3]),
-        stretches(c[V_PRESLIDING]),
-        (tables[0], 1.0 / tables[1]),
-    )
-    place, late, varies = (0.0, (more_at.size - 1) / c[V_TRAVEL]), state[2], widening.size > 1
+    closing, opening, grid, varies = tables[2], tables[3], (tables[0], 1.0 / tables[1]), widening.size > 1
+    place, ends = (0.0, (bends[0].size - 1) / c[V_TRAVEL]), (stops[0], stops[1], stops[2], stops[3])
     lags_s, rates = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
-    wear, stribeck, fading = c[V_WEAR], c[V_STRIBECK], c[V_STRIBECK_SPEED]
-    drags_s = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S])
-    last_h, stays, drags, stay, out[0] = -1.0, (0.0, 0.0), (0.0, 0.0), 1.0, state[0]
-    x, travelled, speed, friction = state[0], state[1], state[3], _stretched(0.0, held, slips)
+    drags_s, slips = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S]), stretches(c[V_PRESLIDING])
+    wear, stribeck, fading, (more_at, less_at, softer_at) = c[V_WEAR], c[V_STRIBECK], c[V_STRIBECK_SPEED], bends
+    x, travelled, late, speed, friction = state[0], state[1], state[2], state[3], _stretched(0.0, held, slips)
+    out[0], last_h, stays, drags, stay = x, -1.0, (0.0, 0.0), (0.0, 0.0), 1.0
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
@@ -221,9 +216,8 @@ def elastic_steps(
             p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
             slow = stribeck * np.exp(-speed / fading) if stribeck > 0.0 else 0.0
             wide = widening[f if varies else 0] + wear * travelled + slow
-            more, less, softer = _bend(x, place, more_at, less_at, softer_at)
-            below, above = _curve_at(p - wide - more, grid, closing), _curve_at(p + wide - less, grid, opening)
-            between = (softer * below, softer * above)
+            below, above, softer = _bend(x, p, wide, place, more_at, less_at, softer_at)
+            between = (softer * _curve_at(below, grid, closing), softer * _curve_at(above, grid, opening))
             out[f], free = _freely(x, h, between, ends, stays, drags, rates, friction)
             if not free:
                 out[f], friction = _held_step(x, h, between, ends, lags_s, drags_s, rates, held, slips, friction)
