@@ -112,8 +112,8 @@ def test_a_wrong_number_beside_an_effect_is_named() -> None:
 
 def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
     # Whatever the dice do is in no vocabulary; it repeats nowhere, and no two causes make a dent in it.
-    trial, _ = trial_of(Plant(DESIGN), staircase())
-    dice = np.random.default_rng(3).normal(0.0, 0.01, 250)
+    trial, _ = trial_of(Plant(DESIGN), staircase()[:2000])
+    dice = np.random.default_rng(3).normal(0.0, 0.01, 125)
     lost = replace(trial.recording, position=trial.recording.position + np.repeat(dice, 16))
     channel = position_channel([replace(trial, recording=lost)], SIGMA)
     rules = SearchRules(threads=2, beam=1, rounds=2, polish=2, paired=1, screened=1, forms=1)
@@ -127,7 +127,7 @@ def test_a_third_cause_is_not_looked_for_where_it_would_not_be_accepted() -> Non
     assert SearchRules().scant == DecisionRules().share
     lag = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.9,))
     bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.02,))
-    trial, _ = trial_of(Plant(DESIGN, (lag, bow)), staircase())
+    trial, _ = trial_of(Plant(DESIGN, (lag, bow)), staircase()[:2000])
     slow = 1e-3 * np.sin(np.arange(trial.recording.n) / 90.0)
     channel = position_channel(
         [replace(trial, recording=replace(trial.recording, position=trial.recording.position + slow))], SIGMA

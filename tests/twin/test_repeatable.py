@@ -21,7 +21,7 @@ from twin.repeatable import disturbance, repeated_share
 
 
 def twice() -> FloatArray:
-    return np.tile(staircase()[:2000], 2)
+    return np.tile(staircase()[:1500], 2)
 
 
 def rest_of(trial: Trial, kind: str) -> FloatArray:
