@@ -25,7 +25,7 @@ lint: setup
 
 # BLIND=1 adds the forty frozen blind trials, which take minutes: CI does.
 test: lint
-	$(BIN)/python -m pytest -n 2 -m "not interop"
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not interop"
 	$(if $(BLIND),$(BIN)/python bench/blind_ci.py)
 
 docs: setup

@@ -62,10 +62,10 @@ class Plant:
         """What the kernels need, with all effects written in; `place`: see `Coefficients`."""
         c = Coefficients(self.design, duration_s, place)
         d = self.design
-        c.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = d.ep_tau_s
-        c.valve[[V_HIGH, V_TRAVEL]] = d.travel
-        c.valve[[V_TAU_CLOSE_S, V_TAU_OPEN_S]] = d.tau_s
-        c.valve[[V_RATE_CLOSE, V_RATE_OPEN]] = d.rate_limit
+        c.ep[EP_TAU_RISE_S] = c.ep[EP_TAU_FALL_S] = d.ep_tau_s
+        c.valve[V_HIGH] = c.valve[V_TRAVEL] = d.travel
+        c.valve[V_TAU_CLOSE_S] = c.valve[V_TAU_OPEN_S] = d.tau_s
+        c.valve[V_RATE_CLOSE] = c.valve[V_RATE_OPEN] = d.rate_limit
         c.sensor[S_TRAVEL] = d.travel
         for one in self.inserted:
             one.form.apply(c, one.values)
@@ -129,7 +129,7 @@ def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]
     """The two curves as tables over a uniform pressure grid: (first pressure, step, closing, opening)."""
     d = c.design
     k1, k2 = d.compliance * c.close_gain, d.compliance * c.open_gain
-    if np.ptp(c.close_shift) == 0.0 and np.ptp(c.open_shift) == 0.0:
+    if (c.close_shift == c.close_shift[0]).all() and (c.open_shift == c.open_shift[0]).all():
         a1, a2 = d.a1 + c.close_shift[0], d.a2 + c.open_shift[0]
         return 0.0, 1.0, k1 * (np.arange(2.0) - a1), k2 * (np.arange(2.0) - a2)
     w = np.linspace(-0.5, 1.5, 2 * GRID - 1)

@@ -7,6 +7,8 @@ append: the numbers are compiled into cached kernels.
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 
 from logs.recording import FloatArray
@@ -140,6 +142,11 @@ def stem_stops(valve: FloatArray) -> tuple[float, float]:
 
 def neutral_ep() -> FloatArray:
     """E/P coefficients without any effect; lags are set by the design."""
+    return _ep().copy()
+
+
+@cache  # made for each simulation, of which there are thousands
+def _ep() -> FloatArray:
     c = np.zeros(EP_COUNT)
     c[[EP_GAIN, EP_REFILL_S]] = 1.0
     c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
@@ -148,6 +155,11 @@ def neutral_ep() -> FloatArray:
 
 def neutral_valve() -> FloatArray:
     """Valve coefficients without any effect; curves, lags, rates and stops are set by the design."""
+    return _valve().copy()
+
+
+@cache
+def _valve() -> FloatArray:
     c = np.zeros(V_COUNT)
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
@@ -158,6 +170,11 @@ def neutral_valve() -> FloatArray:
 
 def neutral_sensor() -> FloatArray:
     """Sensor coefficients of a perfect reading."""
+    return _sensor().copy()
+
+
+@cache
+def _sensor() -> FloatArray:
     c = np.zeros(S_COUNT)
     c[S_GAIN] = 1.0
     c[S_DRIFT_TAU_S] = 1.0

@@ -29,9 +29,9 @@ MEANINGS: Mapping[str, str] = {
 }
 
 
-def nominal(design: DesignModel, name: str) -> float:
-    """The value of a design number in the design's units."""
-    values = {
+def nominals(design: DesignModel) -> dict[str, float]:
+    """The values of all design numbers in the design's units."""
+    return {
         "deadband": design.deadband,
         "offset": design.offset,
         "compliance": design.compliance,
@@ -39,7 +39,11 @@ def nominal(design: DesignModel, name: str) -> float:
         "rate_limit": design.rate_limit,
         "ep_tau": design.ep_tau_s,
     }
-    return values[name]
+
+
+def nominal(design: DesignModel, name: str) -> float:
+    """The value of a design number in the design's units."""
+    return nominals(design)[name]
 
 
 def reference(design: DesignModel, name: str) -> float:
@@ -66,7 +70,7 @@ def unit(design: DesignModel, name: str) -> str:
 
 def retuned(design: DesignModel, values: Mapping[str, float]) -> DesignModel:
     """The design with some of its numbers replaced."""
-    get = {name: values.get(name, nominal(design, name)) for name in NUMBERS}
+    get = nominals(design) | {name: value for name, value in values.items() if name in NUMBERS}
     return replace(
         design,
         ep_tau_s=get["ep_tau"],
