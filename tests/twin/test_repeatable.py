@@ -20,8 +20,8 @@ from twin.plant import Plant
 from twin.repeatable import disturbance, repeated_share
 
 
-def twice() -> FloatArray:
-    return np.tile(staircase()[:1500], 2)
+def twice(rows: int = 1500) -> FloatArray:
+    return np.tile(staircase()[:rows], 2)
 
 
 def rest_of(trial: Trial, kind: str) -> FloatArray:
@@ -81,7 +81,7 @@ def test_beside_a_measured_pressure_a_smaller_swing_shows() -> None:
 
 
 def test_a_pressure_that_wanders_and_is_measured_is_no_disturbance() -> None:
-    trial, _ = trial_of(Plant(DESIGN), twice())
+    trial, _ = trial_of(Plant(DESIGN), twice(2000))
     command = trial.recording.command
     wandering = command + 0.025 * np.sin(2.0 * np.pi * trial.recording.time_s / 23.7)
     moved = trial_of(Plant(DESIGN), wandering)[0].recording
