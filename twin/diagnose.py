@@ -32,6 +32,7 @@ from twin.partial import Interrupted, Known, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
 from twin.refresh import refreshed_together
+from twin.repeatable import differ_for_a_cause, leaves_what_rests
 from twin.rounding import lacking_codes, rounding_down
 from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
 from twin.stages import StageResult, judge
@@ -45,6 +46,7 @@ from twin.wander import unrest
 from twin.whereabouts import attributed, whereabouts
 
 Progress = Callable[[str, float], None]
+Prepared = tuple[Case, Case, Sensing, tuple[Inserted, ...]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +105,7 @@ def diagnose(
 
 def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
-    case, look, sensing, late = _prepared(known, settings, progress)
-    share = known.margin_share
-    rules = replace(settings.rules, gain=max(settings.rules.gain, share), within=1.0 if share > 0.0 else 0.0)
-    settings = replace(settings, rules=rules)
-    result = judge(look, settings.search, settings.rules, progress, watch=known.searches.append)
+    (case, look, sensing, late), settings, result = _found(known, settings, progress)
     sure = tuple(inside(settled(d, settings.rules, settings.weights), settings.rules) for d in result.decisions)
     result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
@@ -160,13 +158,43 @@ def _upheld(
     return upheld(parts, judgement, case.sigma_y, sensing, *told)
 
 
-def _prepared(known: Known, settings: Settings, progress: Progress) -> tuple[Case, Case, Sensing, tuple[Inserted, ...]]:
+def _found(known: Known, settings: Settings, progress: Progress) -> tuple[Prepared, Settings, StageResult]:
+    """What the search found, with what it was made on, and the settings that the margin makes of the given ones.
+
+    Where a cause explains why repeats differ, their difference is no noise: all is searched once more with that of the
+    resting reading, in which smaller causes show, and what comes of it holds if it leaves no more than that.
+    """
+    given = known.recordings
+    first = _searched(known, settings, progress)
+    if not differ_for_a_cause(first[2].decisions[-1], first[0][1].noise.position):
+        return first
+    known.recordings = given
+    again = _searched(known, settings, progress, repeats=False)
+    if leaves_what_rests(again[2].decisions[-1]):
+        return again
+    known.recordings = given
+    return _prepared(known, settings, progress), *first[1:]
+
+
+def _searched(
+    known: Known, settings: Settings, progress: Progress, repeats: bool = True
+) -> tuple[Prepared, Settings, StageResult]:
+    prepared, share = _prepared(known, settings, progress, repeats), known.margin_share
+    rules = replace(settings.rules, gain=max(settings.rules.gain, share), within=1.0 if share > 0.0 else 0.0)
+    settings = replace(settings, rules=rules)
+    result = judge(prepared[1], settings.search, settings.rules, progress, watch=known.searches.append)
+    return prepared, settings, result
+
+
+def _prepared(known: Known, settings: Settings, progress: Progress, repeats: bool = True) -> Prepared:
     """The case, the look at it that is searched, what the readings themselves show, and how late commands are."""
     plant = known.plant
     alone, copies = used_once(known.recordings)
     recordings, notes = cut_at_holes(alone)
     notes += copies
     noise = estimate_noise(recordings)
+    if not repeats:
+        noise = replace(noise, position=estimate_noise(recordings, repeats=False).position)
     notes += admit(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
     noise = noise_of_refreshed(recordings, noise)

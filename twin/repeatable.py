@@ -14,9 +14,10 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.case import Case
+from twin.choose.decide import Decision
 from twin.fit.channel import predict_reading_given_pressure
 from twin.fit.trial import Trial
-from twin.noise.model import LOUD
+from twin.noise.model import LOUD, SignalNoise
 from twin.noise.repeats import find_repeats
 from twin.noise.robust import robust_sigma
 
@@ -25,6 +26,9 @@ from twin.noise.robust import robust_sigma
 #: what is left need not be so loud.
 MATERIAL = 0.006
 UNLIKE, MATERIAL_GIVEN_PRESSURE = 2.0, 0.003
+#: Of the variance by which repeats differ: causes that leave less explain why, if the resting reading has less, too.
+#: Of the noise of the resting reading: what may be left then.
+EXPLAINED, AT_REST = 0.5, 1.5
 
 
 def repeated_share(residuals: FloatArray, trials: Sequence[Trial]) -> float | None:
@@ -42,6 +46,23 @@ def repeated_share(residuals: FloatArray, trials: Sequence[Trial]) -> float | No
         common += float(first @ second[row])
         whole += 0.5 * float(first @ first + second[row] @ second[row])
     return common / whole if whole > 0.0 else None
+
+
+def differ_for_a_cause(decision: Decision, noise: SignalNoise) -> bool:
+    """Whether what was accepted for the position explains by what repeats differ: that is no noise then.
+
+    What drifts from one repeat to the next makes them differ; measured by that difference, the noise hides any smaller
+    cause beside the drift.
+    """
+    known = noise.by_source
+    resting = known.get("still", known.get("straight", noise.sigma))
+    calm = noise.source == "repeats" and resting**2 < EXPLAINED * noise.sigma**2
+    return calm and bool(decision.names) and decision.accepted.mse < EXPLAINED
+
+
+def leaves_what_rests(decision: Decision) -> bool:
+    """Whether what was accepted leaves about the noise, when that is the resting reading's."""
+    return bool(decision.names) and decision.accepted.mse <= AT_REST * decision.floor
 
 
 @dataclass(frozen=True, slots=True)

@@ -72,14 +72,16 @@ class NoiseModel:
         return self.position.whiten(residual)
 
 
-def estimate_noise(recordings: Sequence[Recording]) -> NoiseModel:
+def estimate_noise(recordings: Sequence[Recording], repeats: bool = True) -> NoiseModel:
     """Measures the noise of recordings that share a unit; uses no model and no candidate's residual.
+
+    `repeats`: whether by repeats, where there are any; not, where it is known why these differ.
 
     Every source is computed, the first with at least 200 samples is used: repeats of a command sequence (differences
     over sqrt 2), still stretches (about a parabola; under a constant command or, for the position, which may rest in
     the deadband, under any), stretches of an even command, second differences (with a first-order memory at most).
     """
-    pairs = find_repeats(recordings)
+    pairs = find_repeats(recordings) if repeats else []
     pressured = [r for r in recordings if r.pressure is not None]
     return NoiseModel(
         position=_signal("position", recordings, pairs),

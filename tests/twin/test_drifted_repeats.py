@@ -1,0 +1,73 @@
+"""Where a drift explains why repeats differ, their difference is no noise, and a smaller cause beside it shows."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from logs.recording import Recording
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin import diagnose as module
+from twin.catalog import effect
+from twin.choose.search import SearchRules
+from twin.diagnose import Outcome, Settings, diagnose
+from twin.noise.model import SignalNoise, estimate_noise
+from twin.plant import Inserted, Plant
+from twin.repeatable import differ_for_a_cause, leaves_what_rests
+
+DRIFT = Inserted("friction_drift", effect("friction_drift").form("linear"), (3e-5,))
+LOOSE = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.003,))
+
+
+@pytest.fixture(scope="module")
+def drifting() -> Recording:
+    """The same commands twice, with a packing that grips harder all the time and a slightly loose core."""
+    trial, _ = trial_of(Plant(DESIGN, (DRIFT, LOOSE)), np.tile(staircase()[:1500], 2))
+    r = trial.recording
+    assert r.pressure is not None
+    return replace(r, pressure=r.pressure + np.random.default_rng(7).normal(0.0, 0.008, r.n))
+
+
+def answered(record: Recording) -> Outcome:
+    return diagnose([record], DESIGN, (), Settings(search=SearchRules(most=2)))
+
+
+def test_both_are_named_and_the_floor_is_that_of_the_resting_reading(drifting: Recording) -> None:
+    assert estimate_noise([drifting]).position.source == "repeats"
+    found = answered(drifting)
+    assert {c.name for c in found.diagnosis.causes} == {"friction_drift", "linkage_lost_motion"}
+    noise = found.result.case.noise
+    assert noise.position.source == "still" and noise.position.sigma == pytest.approx(SIGMA, rel=0.15)
+    assert noise.pressure is not None and noise.pressure.source == "repeats"
+
+
+def test_what_leaves_more_than_the_resting_noise_is_not_kept(
+    drifting: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(module, "leaves_what_rests", lambda _decision: False)
+    found = answered(drifting)
+    assert found.result.case.noise.position.source == "repeats"
+    assert "friction_drift" in {c.name for c in found.diagnosis.causes}
+
+
+def decision(mse: float, names: tuple[str, ...] = ("friction_drift",)) -> Any:
+    return SimpleNamespace(names=names, accepted=SimpleNamespace(mse=mse), floor=1.0)
+
+
+def test_when_a_cause_explains_by_what_repeats_differ() -> None:
+    loud = SignalNoise(3e-3, 1.0, "repeats", 900, 0.1, by_source={"repeats": 3e-3, "still": 1e-3})
+    assert differ_for_a_cause(decision(0.2), loud)
+    assert not differ_for_a_cause(decision(0.9), loud)
+    assert not differ_for_a_cause(decision(0.2, ()), loud)
+    assert not differ_for_a_cause(decision(0.2), replace(loud, source="still"))
+    assert not differ_for_a_cause(decision(0.2), replace(loud, by_source={"repeats": 3e-3, "still": 2.9e-3}))
+    assert not differ_for_a_cause(decision(0.2), replace(loud, by_source={"repeats": 3e-3}))
+
+
+def test_what_rests_is_about_the_noise() -> None:
+    assert leaves_what_rests(decision(1.2)) and not leaves_what_rests(decision(2.0))
+    assert not leaves_what_rests(decision(1.2, ()))
