@@ -14,6 +14,7 @@ from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin import diagnose as module
 from twin.catalog import effect
 from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.noise.model import SignalNoise, estimate_noise
 from twin.plant import Inserted, Plant
@@ -40,6 +41,8 @@ def test_both_are_named_and_the_floor_is_that_of_the_resting_reading(drifting: R
     assert estimate_noise([drifting]).position.source == "repeats"
     found = answered(drifting)
     assert {c.name for c in found.diagnosis.causes} == {"friction_drift", "linkage_lost_motion"}
+    sure = {c.name: c.probability for c in found.diagnosis.causes}
+    assert sure["linkage_lost_motion"] <= Weights().further < sure["friction_drift"]  # beside a larger one
     noise = found.result.case.noise
     assert noise.position.source == "still" and noise.position.sigma == pytest.approx(SIGMA, rel=0.15)
     assert noise.pressure is not None and noise.pressure.source == "repeats"

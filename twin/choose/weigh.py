@@ -25,13 +25,14 @@ _COMPANION = 3.0
 class Weights:
     """Chosen on the calibration bank. `temperature` divides score differences; `confusable` is the least odds of a twin
     against the accepted cause; `ceiling` is the highest probability ever claimed where something is left of the signal,
-    `exact` where its noise is all that is left, `twin_ceiling` that of a cause
-    which no record of these signals can tell from another."""
+    `exact` where its noise is all that is left, `further` that of a cause beside a larger one behind the same signal,
+    `twin_ceiling` that of a cause which no record of these signals can tell from another."""
 
     temperature: float = 10.0
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.97
+    further: float = 0.8
     twin_ceiling: float = 0.6
 
 
@@ -58,7 +59,15 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     for name in decision.names:
         if twins_of(decision.accepted, name):
             probability[name] = min(probability[name], weights.twin_ceiling)
+        if name != leading(decision):
+            probability[name] = min(probability[name], weights.further)
     return Weighed(probability, _sets(decision, fits, odds, weights))
+
+
+def leading(decision: Decision) -> str | None:
+    """The accepted cause that alone leaves least; None where none was accepted or none was fitted alone."""
+    alone = [f for f in decision.findings.fits if len(f.names) == 1 and f.names[0] in decision.names]
+    return min(alone, key=lambda f: f.mse).names[0] if alone else None
 
 
 def _usual(accepted: Fit, fit: Fit) -> float:
