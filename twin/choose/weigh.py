@@ -32,7 +32,7 @@ class Weights:
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.97
-    further: float = 0.8
+    further: float = 0.85
     twin_ceiling: float = 0.6
 
 
