@@ -75,9 +75,8 @@ def _floor(case: Case, parts: GapParts, judgement: Judgement, loud: Disturbance 
     """
     if not judgement.causes:
         return loud.resting if loud is not None and loud.signal == "position" else case.sigma_y
-    known = case.noise.position.by_source
-    resting = known.get("still", known.get("straight", case.sigma_y))
-    return min(case.sigma_y, max(rms(parts.after), resting))
+    resting = case.noise.position.resting
+    return case.sigma_y if resting is None else min(case.sigma_y, max(rms(parts.after), resting))
 
 
 def _noise(case: Case) -> dict[str, object]:

@@ -168,12 +168,12 @@ def _found(known: Known, settings: Settings, progress: Progress) -> tuple[Prepar
     first = _searched(known, settings, progress)
     if not differ_for_a_cause(first[2].decisions[-1], first[0][1].noise.position):
         return first
-    known.recordings = given
-    again = _searched(known, settings, progress, repeats=False)
-    if leaves_what_rests(again[2].decisions[-1]):
-        return again
-    known.recordings = given
-    return _prepared(known, settings, progress), *first[1:]
+    calm = replace(known, recordings=given, searches=[])  # who stops it now keeps what the first search has found
+    again = _searched(calm, settings, progress, repeats=False)
+    if not leaves_what_rests(again[2].decisions[-1]):
+        return first
+    known.take(calm)
+    return again
 
 
 def _searched(

@@ -66,6 +66,11 @@ class Known:
 
         return tell
 
+    def take(self, other: Known) -> None:
+        """Goes on with what a further search was made on."""
+        self.recordings, self.notes, self.noise = other.recordings, other.notes, other.noise
+        self.case, self.margin_share, self.searches = other.case, other.margin_share, other.searches
+
     @property
     def stage(self) -> str:
         """Where the diagnosis is, in words."""

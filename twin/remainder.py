@@ -38,8 +38,8 @@ def leaves_too_much(
         return behind and before > SLIGHT * floor and left > ERRATIC * gap
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
-    erratic = erratic or all(c.name in shown for c in causes)
+    told = all(c.name in shown for c in causes)
     several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
     many = any(len(c.parameters) > FREE for c in causes) and not exact
-    share = (ERRATIC if erratic else LEFT) * (0.5 if several or many else 1.0)
+    share = (ERRATIC if erratic or told else LEFT) * (0.5 if several or many else 1.0)
     return left > share * gap

@@ -54,10 +54,9 @@ def differ_for_a_cause(decision: Decision, noise: SignalNoise) -> bool:
     What drifts from one repeat to the next makes them differ; measured by that difference, the noise hides any smaller
     cause beside the drift.
     """
-    known = noise.by_source
-    resting = known.get("still", known.get("straight", noise.sigma))
-    calm = noise.source == "repeats" and resting**2 < EXPLAINED * noise.sigma**2
-    return calm and bool(decision.names) and decision.accepted.mse < EXPLAINED
+    if noise.source != "repeats" or noise.resting is None or not decision.names:
+        return False
+    return noise.resting**2 < EXPLAINED * noise.sigma**2 and decision.accepted.mse < EXPLAINED
 
 
 def leaves_what_rests(decision: Decision) -> bool:
@@ -97,10 +96,10 @@ def disturbance(case: Case, trials: Sequence[Trial] = (), margin_position: float
 
 def _given_the_pressure(case: Case, trials: Sequence[Trial], slack: float) -> Disturbance | None:
     """The same for the position, less what the design makes of the pressure that was measured each time."""
-    known = case.noise.position.by_source
-    resting = known.get("still", known.get("straight", 0.0))
+    noise = case.noise.position
+    resting = noise.resting
     driven = [t for t in trials if t.pressure is not None]
-    if not resting or len(driven) < len(trials) or known.get("repeats", 0.0) <= UNLIKE * resting:
+    if not resting or len(driven) < len(trials) or noise.by_source.get("repeats", 0.0) <= UNLIKE * resting:
         return None
     errors = [
         replace(t.recording, position=t.recording.position - predict_reading_given_pressure(case.base, t))

@@ -147,6 +147,5 @@ def _judge(
 def _resting(case: Case, channel: Channel) -> float:
     """Mean squared error of the channel's reading at rest, noise variance = 1; 1 where that is not known."""
     noise = case.noise.pressure if channel.name == "pressure" else case.noise.position
-    known = noise.by_source if noise is not None else {}
-    resting = known.get("still", known.get("straight", channel.sigma))
-    return float(min(1.0, (resting / channel.sigma) ** 2))
+    resting = noise.resting if noise is not None else None
+    return 1.0 if resting is None else float(min(1.0, (resting / channel.sigma) ** 2))

@@ -30,7 +30,7 @@ def _command(n: int) -> FloatArray:
 
 
 def a_record(plant: Plant, seed: int = 1, twice: bool = False, n: int = 1500) -> Recording:
-    """Five minutes of noisy readings, in `n` rows; `twice`: the second half has the commands of the first."""
+    """`n` noisy readings, 0.2 s apart: five minutes; `twice`: the second half has the commands of the first."""
     period_s = 0.2
     blank = np.zeros(n)
     command = np.tile(_command(n // 2), 2) if twice else _command(n)

@@ -17,6 +17,7 @@ from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.noise.model import SignalNoise, estimate_noise
+from twin.partial import Interrupted
 from twin.plant import Inserted, Plant
 from twin.repeatable import differ_for_a_cause, leaves_what_rests
 
@@ -55,6 +56,22 @@ def test_what_leaves_more_than_the_resting_noise_is_not_kept(
     found = answered(drifting)
     assert found.result.case.noise.position.source == "repeats"
     assert "friction_drift" in {c.name for c in found.diagnosis.causes}
+
+
+def test_who_stops_the_second_search_keeps_what_the_first_found(drifting: Recording) -> None:
+    begun: list[str] = []
+
+    def stop(what: str, _share: float) -> None:
+        begun.append(what)
+        if begun.count("noise and events") == 2 and what.startswith("position"):
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as stopped:
+        diagnose([drifting], DESIGN, (), Settings(search=SearchRules(most=2)), stop)
+    found = stopped.value.diagnosis
+    assert {"friction_drift", "linkage_lost_motion"} <= {c.name for c in found.ranking}  # each tried alone
+    loud = estimate_noise([drifting]).position.sigma
+    assert found.gap.noise_floor == pytest.approx(100.0 * loud / DESIGN.travel, rel=1e-3)
 
 
 def decision(mse: float, names: tuple[str, ...] = ("friction_drift",)) -> Any:

@@ -2,30 +2,33 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
 from logs.recording import FloatArray
 from tests.twin.loops import PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
 from twin.effect import Coefficients
+from twin.kernels.valve import _widening
 from twin.place import Place
 from twin.plant import Plant
 
-GROWTH = {
+GROWTH: dict[str, tuple[tuple[float, ...], Callable[[float, float], float]]] = {
     "wear_on_stem": ((0.25,), lambda _t, way: 0.25 * way),
     "linear_on_stem": ((4e-3,), lambda t, _way: 4e-3 * t),
     "warm_up_on_stem": ((0.4, 40.0), lambda t, _way: 0.4 * (1.0 - np.exp(-t / 40.0))),
 }
 
 
-def in_small_steps(grown: object, stays: bool = True) -> FloatArray:
+def in_small_steps(grown: Callable[[float, float], float]) -> FloatArray:
     """A play of the design's width; behind it the stem is pulled by what is left of the way to its target."""
     time_s = np.arange(0.0, TIME_S[-1] + SMALL_S, SMALL_S)
     x, w, way, found = 0.0, 0.0, 0.0, np.empty(time_s.size)
     for k, p in enumerate(np.interp(time_s, TIME_S, PRESSURE)):
         found[k] = x
         w = min(D.travel, max(0.0, D.compliance * (p - D.a1), min(D.compliance * (p - D.a2), w)))
-        rubs = D.compliance * grown(time_s[k], way)  # type: ignore[operator]
+        rubs = D.compliance * grown(float(time_s[k]), way)
         pull = np.sign(w - x) * max(0.0, abs(w - x) - rubs)
         step = SMALL_S * max(-D.rate_limit, min(D.rate_limit, pull / D.tau_s))
         x, way = x + step, way + abs(step)
@@ -50,8 +53,6 @@ def coefficients(form: str, values: tuple[float, ...], since_s: float) -> Coeffi
 
 @pytest.mark.parametrize("form", ["linear_on_stem", "warm_up_on_stem"])
 def test_a_later_recording_begins_with_what_has_grown_before(form: str) -> None:
-    from twin.kernels.valve import _widening
-
     values, grown = GROWTH[form]
     offsets = np.arange(TIME_S.size, dtype=np.int64)
     later = _widening(TIME_S, offsets, coefficients(form, values, 100.0).valve)

@@ -56,10 +56,11 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
     ceiling = weights.exact if decision.exact else weights.ceiling
     probability = {n: min(p, ceiling) for n, p in raw.items()}
+    first = leading(decision)
     for name in decision.names:
         if twins_of(decision.accepted, name):
             probability[name] = min(probability[name], weights.twin_ceiling)
-        if name != leading(decision):
+        if name != first:
             probability[name] = min(probability[name], weights.further)
     return Weighed(probability, _sets(decision, fits, odds, weights))
 

@@ -52,6 +52,11 @@ class SignalNoise:
     tail_ratio: float = 1.0
     by_source: Mapping[str, float] = field(default_factory=dict)
 
+    @property
+    def resting(self) -> float | None:
+        """Sigma of the signal while it rests, or where the command is even; None where neither was seen."""
+        return _resting(self.by_source)
+
     def whiten(self, residual: FloatArray) -> FloatArray:
         """The residual, shape (n,), as independent values of unit variance if it were this noise; NaN stays NaN."""
         if self.sigma <= 0.0:
@@ -126,8 +131,12 @@ def _louder(by_source: Mapping[str, float]) -> bool:
 
     A deadband that grows, a disturbance that comes once: as a floor it would hide its own cause.
     """
-    resting = by_source.get("still", by_source.get("straight"))
+    resting = _resting(by_source)
     return resting is not None and by_source.get("repeats", 0.0) > LOUD * max(resting, by_source["high_frequency"])
+
+
+def _resting(by_source: Mapping[str, float]) -> float | None:
+    return by_source.get("still", by_source.get("straight"))
 
 
 def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "any", "straight"]) -> list[FloatArray]:
