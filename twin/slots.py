@@ -89,7 +89,11 @@ V_DRAG_OPEN_S = 43  # and of one that opens
 V_RELAX = 44  # pressure for each distance of the stem that a spring at first takes and then lets go [pressure/position]
 V_RELAX_TAU_S = 45
 V_ON_STEM = 46  # compliance, if what friction grows by holds the stem off its target [position/pressure]; 0: play grows
-V_COUNT = 47
+V_STRETCHES = (
+    47  # 1: what creeps is added to the stem, up to its stops, and is not a part of its motion that comes late
+)
+V_STRETCHED = 48  # what there is of that at the start [-]
+V_COUNT = 49
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

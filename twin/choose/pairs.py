@@ -62,16 +62,26 @@ def promising_pairs(
     gram = directions @ directions.T
     along = -directions @ screen.r
     gains, sizes = _gains(gram, along)
-    best: dict[tuple[str, ...], tuple[float, int, int]] = {}
-    for i, j in zip(*np.triu_indices(len(moves), 1), strict=True):
-        a, b = moves[i].cause, moves[j].cause
-        if a.name == b.name or not together(a, b):
-            continue
-        key = tuple(sorted((a.name, b.name)))
-        if key not in best or gains[i, j] > best[key][0]:
-            best[key] = (float(gains[i, j]), int(i), int(j))
-    ranked = sorted(best.values(), reverse=True)
-    return [_pair(screen, moves[i], moves[j], float(sizes[i, j]), float(sizes[j, i]), gain) for gain, i, j in ranked]
+    best = _best_of_each([m.cause for m in moves], gains, together)
+    return [_pair(screen, moves[i], moves[j], float(sizes[i, j]), float(sizes[j, i]), gain) for gain, i, j in best]
+
+
+def _best_of_each(
+    causes: Sequence[Cause], gains: FloatArray, together: Callable[[Cause, Cause], bool]
+) -> list[tuple[float, int, int]]:
+    """Of every two names that mean something beside each other the best (gain, first, second), the best names first."""
+    named = {c.name: c for c in causes}
+    at = {name: k for k, name in enumerate(named)}
+    apart = np.array([[a is not b and together(a, b) for b in named.values()] for a in named.values()])
+    which = np.array([at[c.name] for c in causes])
+    i, j = np.triu_indices(len(causes), 1)
+    pays = apart[which[i], which[j]]
+    i, j = i[pays], j[pays]
+    order = np.lexsort((j, i, -gains[i, j]))
+    low, high = np.minimum(which[i], which[j]), np.maximum(which[i], which[j])
+    _, first = np.unique((low * len(named) + high)[order], return_index=True)
+    pairs = order[first]
+    return sorted(zip(gains[i, j][pairs].tolist(), i[pairs].tolist(), j[pairs].tolist(), strict=True), reverse=True)
 
 
 def _moves(screen: Screen, cause: Cause, ended: Sequence[Fit]) -> list[Move]:

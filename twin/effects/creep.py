@@ -14,6 +14,8 @@ from twin.slots import (
     V_FORCE_CREEP_TAU_S,
     V_RELAX,
     V_RELAX_TAU_S,
+    V_STRETCHED,
+    V_STRETCHES,
     V_TARGET_CREEPS,
 )
 
@@ -28,6 +30,18 @@ _SHARE = Parameter(
     starts=(0.01, 0.06, 0.2),
     scale=0.1,
     doc="share of the motion that comes late",
+)
+
+_BEGUN = Parameter(
+    name="begun",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.2,),
+    scale=0.5,
+    doc="how much of it there is at the start of each recording",
+    neutral=1.0,
+    size=False,
 )
 
 
@@ -66,6 +80,16 @@ def _pull_twice(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_TARGET_CREEPS] = 1.0
 
 
+def _stretch(c: Coefficients, values: Sequence[float]) -> None:
+    _one_tail(c, values)
+    c.valve[V_STRETCHES], c.valve[V_STRETCHED] = 1.0, values[2]
+
+
+def _stretch_twice(c: Coefficients, values: Sequence[float]) -> None:
+    _two_tails(c, values)
+    c.valve[V_STRETCHES], c.valve[V_STRETCHED] = 1.0, values[2]
+
+
 def _force(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_FORCE_CREEP] = values[0]
     c.valve[V_FORCE_CREEP_TAU_S] = values[1]
@@ -84,6 +108,7 @@ EFFECT = Effect(
     equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
     "6 tail; pull: the same on the target of the stem, before its lag and rate limit (on the stem where the two act on "
     "each other); force: the same on the pressure before the play; "
+    "stretch: reading = x + share z up to the stops, z as above and begun x at the start; "
     "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail",
     source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
     forms=(
@@ -91,6 +116,8 @@ EFFECT = Effect(
         Form("two_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _two_tails),
         Form("pull_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the pull")), _pull),
         Form("pull_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _pull_twice),
+        Form("stretch", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which it gives way"), _BEGUN), _stretch),
+        Form("stretch_twice", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two"), _BEGUN), _stretch_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
         Form("spring_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which the spring relaxes")), _relax),
     ),

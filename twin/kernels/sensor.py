@@ -45,6 +45,9 @@ from twin.slots import (
     S_ZERO,
 )
 
+#: The pieces of a natural cubic spline are linear in its knots: (4, pieces, knots), for knots 1 apart.
+_CARDINAL = CubicSpline(np.arange(KNOTS + 1.0), np.eye(KNOTS + 1), bc_type="natural").c
+
 
 def sensor_kernel(
     time_s: FloatArray,
@@ -114,9 +117,20 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
 
 def _wandering(t: FloatArray, c: FloatArray) -> FloatArray:
     """The zero that goes smoothly through its knots, from 0 at the start; after the last knot it stays."""
-    knots = np.concatenate([[0.0], c[S_KNOTS : S_KNOTS + KNOTS]])
-    zero = CubicSpline(c[S_WANDER_S] * np.arange(KNOTS + 1.0), knots, bc_type="natural")
-    return np.asarray(zero(np.minimum(t, KNOTS * c[S_WANDER_S])))
+    pieces = _CARDINAL @ np.concatenate([[0.0], c[S_KNOTS : S_KNOTS + KNOTS]])
+    zero = np.empty_like(t)
+    _piecewise(t, c[S_WANDER_S], pieces, zero)
+    return zero
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _piecewise(t: FloatArray, piece_s: float, pieces: FloatArray, out: FloatArray) -> None:
+    """Fills `out` with cubic `pieces` (4, n), each `piece_s` long and in units of that; after the last it stays."""
+    for i in range(t.size):
+        u = min(t[i] / piece_s, float(pieces.shape[1]))
+        k = min(int(u), pieces.shape[1] - 1)
+        d = u - k
+        out[i] = ((pieces[0, k] * d + pieces[1, k]) * d + pieces[2, k]) * d + pieces[3, k]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

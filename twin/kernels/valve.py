@@ -20,12 +20,9 @@ from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
+from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched
 from twin.slots import (
     V_BREAKAWAY,
-    V_CREEP1,
-    V_CREEP1_TAU_S,
-    V_CREEP2,
-    V_CREEP2_TAU_S,
     V_DAHL,
     V_DAHL_HALF,
     V_DRAG_CLOSE_S,
@@ -48,11 +45,11 @@ from twin.slots import (
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_RELAX,
-    V_REMEMBERS,
     V_ROUNDED,
     V_SHORT,
     V_STEP,
     V_STEP_TIME_S,
+    V_STRETCHES,
     V_STRIBECK,
     V_TARGET_CREEPS,
     V_TAU_AFTER_S,
@@ -68,7 +65,6 @@ _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_ON
 _COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4
-_CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
 def valve_kernel(
@@ -88,13 +84,15 @@ def valve_kernel(
     force = _force(time_s, offsets, pressure, c, start[1])
     widening = _widening(time_s, offsets, c)
     tables = (float(tables[0]), float(tables[1]), *tables[2:])
-    start = (float(start[0]), float(start[1]))
+    start = unstretched(c, (float(start[0]), float(start[1])))
     held = 0.0 if couples(c, bends) else held_by_tails(force, widening, c, tables, plays, start)
     after = c[V_TARGET_CREEPS] == 0.0 or couples(c, bends)
     first = (start[0] - held, start[1] - held) if after else start
     _stem(time_s, offsets, force, widening, c, tables, plays, bends, first, held, out)
-    if after:
-        _creep(time_s, offsets, c, held, out)
+    if c[V_STRETCHES] != 0.0:
+        stretch_tails(time_s, offsets, c, out)
+    elif after:
+        creep_tails(time_s, offsets, c, held, out)
 
 
 def couples(c: FloatArray, bends: Bends) -> bool:
@@ -151,7 +149,7 @@ def _stem(
     else:
         target = _target(force, widening, c, tables, plays, start[1], at)
         if c[V_TARGET_CREEPS] != 0.0:
-            _creep(time_s, offsets, c, held, target)
+            creep_tails(time_s, offsets, c, held, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         move_stem(time_s, offsets, target, c, np.array([start[0], 0.0]), out)
 
@@ -206,33 +204,3 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
     if c[V_STEP] != 0.0:
         widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
     return widening
-
-
-def _creep(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, held: float, out: FloatArray) -> None:
-    """Replaces part of the motion by its slow tails: of the stem, or of its target where these are apart.
-
-    `held`: what the tails still have of what was before, at the first row [position].
-    """
-    shares = [(c[share], c[tau]) for share, tau in _CREEPS if c[share] != 0.0]
-    if not shares:
-        return
-    out += sum(share * (lagged(time_s, offsets, out, tau_s) - out) for share, tau_s in shares)
-    if held != 0.0:
-        t, whole = elapsed_s(time_s, offsets), sum(share for share, _ in shares)
-        out += held * sum(share / whole * np.exp(-t / max(tau_s, 1e-9)) for share, tau_s in shares)
-
-
-def held_by_tails(
-    force: FloatArray, widening: FloatArray, c: FloatArray, tables: Tables, plays: Plays, start: tuple[float, float]
-) -> float:
-    """How far from where the pressure has it slow tails hold a stem that is at rest, at the first row [position].
-
-    They still have what was before the recording, where the readings show it; no more than all of the travel in each.
-    """
-    whole = float(sum(c[share] for share, _ in _CREEPS))
-    if whole <= 0.0 or c[V_REMEMBERS] == 0.0:
-        return 0.0
-    at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
-    target = float(play_target(force[:1], widening[:1], (c[V_LOW], c[V_HIGH]), tables, *plays, at)[0])
-    least, most = whole * (c[V_LOW] - target), whole * (c[V_HIGH] - target)
-    return float(min(max(start[0] - target, least), most))

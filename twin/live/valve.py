@@ -11,6 +11,7 @@ from twin.effect import Coefficients
 from twin.kernels import valve as kernels
 from twin.kernels.dahl import dahl_target
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.tails import held_by_tails, unstretched
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
 from twin.plant import curve_tables
@@ -33,9 +34,12 @@ from twin.slots import (
     V_OUTER_SLOPE,
     V_STEP,
     V_STEP_TIME_S,
+    V_STRETCHED,
+    V_STRETCHES,
     V_TARGET_CREEPS,
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
+    stem_stops,
 )
 
 
@@ -69,10 +73,10 @@ class Valve:
 
     def _at_first(self, force: FloatArray, widening: FloatArray) -> tuple[Mover, Tails]:
         """What moves the stem, and its tails, as the first pressure has them."""
-        c, start = self._all, self._start
+        c, start = self._all, unstretched(self._c, self._start)
         if couples(c):
             return Stuck(c, *start), Tails(c)
-        held = kernels.held_by_tails(force, widening, c.valve, curve_tables(c), (c.spreads, c.weights), start)
+        held = held_by_tails(force, widening, c.valve, curve_tables(c), (c.spreads, c.weights), start)
         if c.valve[V_TARGET_CREEPS] != 0.0:
             return Sliding(c, *start, Tails(c, held)), Tails(None)
         return Sliding(c, start[0] - held, start[1] - held, Tails(None)), Tails(c, held)
@@ -112,14 +116,28 @@ class Tails:
     def __init__(self, c: Coefficients | None, held: float = 0.0) -> None:
         tails = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S)) if c is not None else ()
         self._tails = [(float(c.valve[a]), Lag(float(c.valve[b]))) for a, b in tails if c is not None and c.valve[a]]
+        self._stretches = c.valve if c is not None and c.valve[V_STRETCHES] != 0.0 else None
         whole = sum(share for share, _ in self._tails)
         for _, lag in self._tails:
             lag.ahead = held / whole
+        self._begun = False
 
     def follow(self, time_s: FloatArray, offsets: np.ndarray, values: FloatArray) -> FloatArray:
         """The block of fine values with its tails, shape of `values`."""
+        if self._stretches is not None:
+            return self._stretched(self._stretches, time_s, offsets, values)
         late = [share * (lag.follow(time_s, offsets, values) - values) for share, lag in self._tails]
         return values + np.sum(late, axis=0) if late else values
+
+    def _stretched(self, c: FloatArray, time_s: FloatArray, offsets: np.ndarray, values: FloatArray) -> FloatArray:
+        """The block with what gives way behind it added, up to the stops."""
+        if not self._begun:
+            for _, lag in self._tails:
+                lag.ahead = (c[V_STRETCHED] - 1.0) * float(values[0])
+            self._begun = True
+        more = [share * lag.follow(time_s, offsets, values) for share, lag in self._tails]
+        stretched: FloatArray = np.clip(np.add(values, np.sum(more, axis=0)), *stem_stops(c))
+        return stretched
 
 
 class Sliding:
