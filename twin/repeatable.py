@@ -49,14 +49,16 @@ def repeated_share(residuals: FloatArray, trials: Sequence[Trial]) -> float | No
 
 
 def differ_for_a_cause(decision: Decision, noise: SignalNoise) -> bool:
-    """Whether what was accepted for the position explains by what repeats differ: that is no noise then.
+    """Whether what was accepted for the position, or a drift, explains by what repeats differ: that is no noise then.
 
     What drifts from one repeat to the next makes them differ; measured by that difference, the noise hides any smaller
-    cause beside the drift.
+    cause, and may be so loud that the drift itself is not accepted.
     """
-    if noise.source != "repeats" or noise.resting is None or not decision.names:
+    if noise.source != "repeats" or noise.resting is None or noise.resting**2 >= EXPLAINED * noise.sigma**2:
         return False
-    return noise.resting**2 < EXPLAINED * noise.sigma**2 and decision.accepted.mse < EXPLAINED
+    explaining = [f for f in decision.findings.fits if any(c.effect and c.effect.drifts for c in f.space.causes)]
+    explaining += [decision.accepted] if decision.names else []
+    return any(f.mse < EXPLAINED for f in explaining)
 
 
 def leaves_what_rests(decision: Decision) -> bool:

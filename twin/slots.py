@@ -39,7 +39,9 @@ EP_SLEW = 21  # highest slope of what the converter aims at [pressure/s]; FOREVE
 EP_RINGS_S = 22  # of a converter that swings to its goal: 1 / its natural frequency [s]; 0: it does not
 EP_DAMPING = 23  # and its damping ratio, below 1
 EP_NOMINAL = 24  # supply with which EP_FULL_UP is the slope [pressure]
-EP_COUNT = 25
+EP_PORT_UP = 25  # by how much the flow that fills is less, of a booster or of the converter itself [-]
+EP_PORT_DOWN = 26  # and that which exhausts
+EP_COUNT = 27
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -152,7 +154,7 @@ def neutral_ep() -> FloatArray:
 @cache  # made for each simulation, of which there are thousands
 def _ep() -> FloatArray:
     c = np.zeros(EP_COUNT)
-    c[[EP_GAIN, EP_REFILL_S]] = 1.0
+    c[[EP_GAIN, EP_REFILL_S, EP_PORT_UP, EP_PORT_DOWN]] = 1.0
     c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
     return c
 

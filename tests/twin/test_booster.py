@@ -11,15 +11,21 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from logs.units import atmosphere
+from tests.twin.judged import a_record
 from twin.catalog import effect
 from twin.chain import chain_response
 from twin.choose.candidates import effect_causes
+from twin.choose.search import SearchRules
+from twin.diagnose import Settings, diagnose
+from twin.effect import Coefficients
 from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_channel
 from twin.fit.trial import make_trial
 from twin.kernels.booster import outflow
+from twin.kernels.ep import ep_kernel
 from twin.live.twin import LiveTwin
 from twin.plant import Inserted, Plant, pressure_response
 from twin.simulate import Start, simulate_recording
+from twin.slots import EP_TAU_FALL_S, EP_TAU_RISE_S
 from twin.timegrid import make_grid
 
 D = DesignModel()
@@ -178,3 +184,28 @@ def test_row_by_row_it_is_the_same(values: tuple[float, float, float], tolerance
     live = LiveTwin(one, 0.0, COMMAND[0], Start(6.0, 0.0, 0.0), 80.0, 0.02)
     got = [6.0, *(live.step(t, u)[0] for t, u in zip(TIME_S[1:], COMMAND[1:], strict=True))]
     assert np.max(np.abs(np.array(got) - want[grid.offsets])) < tolerance
+
+
+@pytest.mark.parametrize(("dirt", "up", "down"), [(1.5, 1.0, 2.5), (-0.8, 1.8, 1.0)])
+def test_dirt_in_a_port_lets_less_through_it(dirt: float, up: float, down: float) -> None:
+    port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port"), (dirt,))
+    clean = plant(0.1, 0.15, 2.0)
+    want = pressure(plant(0.1 * up, 0.15 * down, 2.0))
+    np.testing.assert_allclose(pressure(clean.having((port,))), want, atol=1e-12)
+    np.testing.assert_allclose(pressure(Plant(D, (port, *clean.inserted))), want, atol=1e-12)
+    assert np.abs(pressure(clean) - want).max() > 0.3
+    lags = Coefficients(D, 80.0)
+    lags.ep[[EP_TAU_RISE_S, EP_TAU_FALL_S]] = D.ep_tau_s * np.array([up, down])
+    grid = make_grid(TIME_S, 0.02)
+    plain = np.empty(grid.n_fine)
+    ep_kernel(grid.time_s, COMMAND, grid.offsets, lags.ep, 6.0, None, plain)
+    np.testing.assert_allclose(pressure(Plant(D, (port,)), None), plain[grid.offsets], atol=1e-12)
+
+
+def test_a_dirty_port_of_a_known_booster_is_named() -> None:
+    known = plant(0.1, 0.15, 2.0)
+    port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port"), (1.5,))
+    record = a_record(known.having((port,)), seed=5)
+    found = diagnose([record], D, known.inserted, Settings(search=SearchRules(most=2))).diagnosis
+    assert [(c.name, c.form) for c in found.causes] == [("fill_exhaust_asymmetry", "port")]
+    assert found.causes[0].parameters["dirt"].value == pytest.approx(1.5, rel=0.05)

@@ -16,6 +16,7 @@ from twin.catalog import effect
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
+from twin.fit.space import Cause
 from twin.noise.model import SignalNoise, estimate_noise
 from twin.partial import Interrupted
 from twin.plant import Inserted, Plant
@@ -74,8 +75,16 @@ def test_who_stops_the_second_search_keeps_what_the_first_found(drifting: Record
     assert found.gap.noise_floor == pytest.approx(100.0 * loud / DESIGN.travel, rel=1e-3)
 
 
-def decision(mse: float, names: tuple[str, ...] = ("friction_drift",)) -> Any:
-    return SimpleNamespace(names=names, accepted=SimpleNamespace(mse=mse), floor=1.0)
+def decision(
+    mse: float, names: tuple[str, ...] = ("friction_drift",), others: tuple[tuple[str, float], ...] = ()
+) -> Any:
+    """One that accepted `names`, beside others that leave so much of what counts as noise."""
+    tried = [
+        SimpleNamespace(mse=left, space=SimpleNamespace(causes=(Cause(n, effect(n), effect(n).forms[0]),)))
+        for n, left in others
+    ]
+    accepted = SimpleNamespace(mse=mse)
+    return SimpleNamespace(names=names, accepted=accepted, floor=1.0, findings=SimpleNamespace(fits=tried))
 
 
 def test_when_a_cause_explains_by_what_repeats_differ() -> None:
@@ -86,6 +95,9 @@ def test_when_a_cause_explains_by_what_repeats_differ() -> None:
     assert not differ_for_a_cause(decision(0.2), replace(loud, source="still"))
     assert not differ_for_a_cause(decision(0.2), replace(loud, by_source={"repeats": 3e-3, "still": 2.9e-3}))
     assert not differ_for_a_cause(decision(0.2), replace(loud, by_source={"repeats": 3e-3}))
+    assert differ_for_a_cause(decision(0.9, others=(("friction_drift", 0.2),)), loud)  # too loud for it to be accepted
+    assert differ_for_a_cause(decision(1.0, (), (("lvdt_drift", 0.2),)), loud)
+    assert not differ_for_a_cause(decision(0.9, others=(("friction_drift", 0.8), ("stiction", 0.2))), loud)
 
 
 def test_what_rests_is_about_the_noise() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.slots import EP_PORT_DOWN, EP_PORT_UP, EP_TAU_FALL_S, EP_TAU_RISE_S
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -13,11 +13,17 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_TAU_FALL_S] *= 1.0 - values[0]
 
 
+def _ports(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_PORT_UP] *= 1.0 + max(-values[0], 0.0)
+    c.ep[EP_PORT_DOWN] *= 1.0 + max(values[0], 0.0)
+
+
 EFFECT = Effect(
     name="fill_exhaust_asymmetry",
     stage="ep",
     claim="Pressure rises and falls with different time constants.",
-    equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling",
+    equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
+    "port: only falling, or only rising, and with 1 + dirt; of a booster's flow (ep_rate_limit), if there is one",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
         Form(
@@ -35,6 +41,22 @@ EFFECT = Effect(
                 ),
             ),
             _apply,
+        ),
+        Form(
+            "port",
+            (
+                Parameter(
+                    name="dirt",
+                    kind="fraction",
+                    lower=-12.0,
+                    upper=12.0,
+                    starts=(-2.0, -0.3, 0.3, 2.0),
+                    scale=1.0,
+                    doc="by how much less the exhaust lets through, of what is left; negative: the supply",
+                ),
+            ),
+            _ports,
+            by_pressure=True,
         ),
     ),
     twins=("ep_rate_limit",),

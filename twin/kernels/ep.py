@@ -20,6 +20,8 @@ from twin.slots import (
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
+    EP_PORT_DOWN,
+    EP_PORT_UP,
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
@@ -50,6 +52,7 @@ def ep_kernel(
     Without a delay the goal is constant within a row and has shape (n,), with one it has the shape of `out`.
     `stem`: where it is, of the shape of `out`, for a converter that it takes air from; None: it stands still, open.
     """
+    c = through_ports(c)
     goal = np.ascontiguousarray(command, dtype=np.float64)
     if c[EP_DEAD_S] > 0.0:
         goal = np.empty(out.size)
@@ -74,6 +77,19 @@ def ep_kernel(
         _follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
     else:
         _follow(time_s, offsets, goal, c, p0, out)
+
+
+def through_ports(c: FloatArray) -> FloatArray:
+    """The coefficients of a converter whose ports let less through: of its booster, if it has one."""
+    ports = c[[EP_PORT_UP, EP_PORT_DOWN]]
+    if (ports == 1.0).all():
+        return c
+    narrow = c.copy()
+    if boosted(c):
+        narrow[[EP_FULL_UP, EP_FULL_DOWN]] /= ports
+    else:
+        narrow[[EP_TAU_RISE_S, EP_TAU_FALL_S]] *= ports
+    return narrow
 
 
 def boosted(c: FloatArray) -> bool:

@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
-from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, _slewed, boosted
+from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, _slewed, boosted, through_ports
 from twin.kernels.ringing import ringing_pass
 from twin.slots import (
     EP_AIR,
@@ -34,7 +34,7 @@ class Converter:
     """Command in, pressure out. `time_s`, `command`: the first row; `p0`: the pressure there."""
 
     def __init__(self, c: FloatArray, time_s: float, command: float, p0: float) -> None:
-        self._c = c
+        self._c = c = through_ports(c)
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
