@@ -23,10 +23,10 @@ lint: setup
 	$(BIN)/mypy
 	$(BIN)/lint-imports
 
-# BLIND=1 adds the forty frozen blind trials, which take minutes: CI does.
+# THOROUGH=1, as in CI, adds the tests that take seconds each and the forty frozen blind trials.
 test: lint
-	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not interop"
-	$(if $(BLIND),$(BIN)/python bench/blind_ci.py)
+	$(BIN)/python -m pytest -n 2 --dist worksteal -m "not interop$(if $(THOROUGH),, and not thorough)"
+	$(if $(THOROUGH),$(BIN)/python bench/blind_ci.py)
 
 docs: setup
 	$(BIN)/lostmotion explain --markdown > docs/effects.md

@@ -236,6 +236,7 @@ travel = 100.0
 """
 
 
+@pytest.mark.thorough
 def test_a_sticking_loop_against_a_valve_that_should_follow_one_to_one(tmp_path: Path) -> None:
     (tmp_path / "unity.toml").write_text(UNITY)
     file = write(tmp_path / "loop.csv", sticky_loop())

@@ -24,6 +24,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 made = cache(make)  # some items take seconds
 MINUTES = {"brake", "rivals"}
 QUICK = [key for key in KEYS if key not in MINUTES]
+SECONDS = {"2-8", "3-10", "3-12"}
 
 
 @pytest.fixture(autouse=True)
@@ -43,7 +44,7 @@ def borders_as_stored(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(nyquist, "first_gain", first_gain)
 
 
-@pytest.mark.parametrize("key", QUICK)
+@pytest.mark.parametrize("key", [pytest.param(k, marks=pytest.mark.thorough if k in SECONDS else ()) for k in QUICK])
 def test_the_stored_item_is_not_stale(key: str) -> None:
     assert stale.differences(DOCS, made(key)) == []
 
@@ -52,12 +53,13 @@ def test_the_page_has_every_item_with_its_stored_numbers_and_picture() -> None:
     texts, stored = page.sections(DOCS), page.stored_numbers(DOCS)
     assert tuple(texts) == KEYS
     assert (DOCS / "thesis.md").read_text(encoding="utf-8").startswith(page.INTRODUCTION.read_text(encoding="utf-8"))
-    for key in QUICK:
+    for key in set(QUICK) - SECONDS:
         known = {label: math.nan if value is None else value for label, value in stored.get(key, {}).items()}
         shown = [replace(n, ours=known[n.label]) for n in made(key).numbers]
         assert "\n".join(page.table(shown) if shown else []) in texts[key]
 
 
+@pytest.mark.thorough
 def test_what_the_thesis_saw_emerges_and_what_the_page_says_of_it_is_so() -> None:
     """The order of the thesis's findings, on one bench, with room for other chance."""
     by_key = {key: {n.label: n.ours for n in made(key).numbers} for key in ("1-2", "3-2", "3-4", "3-7", "3-10", "3-12")}

@@ -29,6 +29,7 @@ def golden() -> Recording:
     return a_record(Plant(DesignModel(), (CREEP,)), seed=3)
 
 
+@pytest.mark.thorough
 def test_a_machine_that_is_as_it_always_was_has_no_gap(golden: Recording, tmp_path: Path) -> None:
     healthy = write(tmp_path / "healthy.csv", columns_of(golden))
     today = write(tmp_path / "today.csv", columns_of(a_record(Plant(DesignModel(), (CREEP,)))))

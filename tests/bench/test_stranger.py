@@ -81,6 +81,7 @@ def test_a_form_changes_nothing_at_zero_and_something_at_its_largest(form) -> No
     assert changed(form, form.largest) > 0.0014
 
 
+@pytest.mark.thorough
 def test_a_seed_repeats(tmp_path) -> None:
     first, second = (draw_case(3, 4, "parameter", rough=True) for _ in range(2))
     assert first.label() == second.label()

@@ -77,6 +77,7 @@ def test_pushing_in_vain_leaves_no_trace(breakaway_psi: float) -> None:
     assert np.median([np.abs(off[2:, 300:].mean(axis=1)) for _, off in runs]) < 0.3
 
 
+@pytest.mark.thorough
 def test_a_dead_time_between_two_tenths_of_a_tick_does_not_make_it_hunt() -> None:
     """Known to 0.01 s at best, it carries the pressure beyond the aim; after some turns the pressure goes slowly."""
     runs = [hold([0.15, 0.39, 0.27, 0.3, 0.28, 0.5], {"dead_time": 0.194}, seed=seed)[1] for seed in range(4, 9)]

@@ -10,6 +10,7 @@ from twin.case import make_case
 from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
+from twin.diagnose import Settings
 from twin.insert import inserted_from
 from twin.plant import Plant
 from twin.sensing import sense
@@ -17,6 +18,8 @@ from twin.simulate import simulate_recording
 from twin.stages import StageResult, judge
 from twin.verdict import Judgement, pronounce
 
+#: A diagnosis that stops at two causes, which takes a third of the time where nothing explains all.
+UP_TO_TWO = Settings(search=SearchRules(most=2))
 _NOISE_IN, _NOISE_PSI = 0.0004, 0.008
 
 

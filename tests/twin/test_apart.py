@@ -9,6 +9,7 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
+from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import SIGMA, trial_of
 from twin.case import make_case
 from twin.catalog import effect
@@ -94,24 +95,27 @@ def test_each_recording_is_predicted_with_its_own_zero() -> None:
         assert moved[-1] == pytest.approx(VALUES[2 * k + 1], abs=2e-5)
 
 
+@pytest.mark.thorough
 def test_zeros_that_wander_in_each_recording_by_itself_are_a_drift() -> None:
     found = recordings([0.0, 0.0])
     curves = [0.006 * np.sin(np.pi * r.time_s / r.duration_s) ** p for r, p in zip(found, (1, 3), strict=True)]
     wandering = [replace(r, position=r.position + c) for r, c in zip(found, curves, strict=True)]
-    outcome = diagnose(wandering, DesignModel())
+    outcome = diagnose(wandering, DesignModel(), (), UP_TO_TWO)
     assert [c.name for c in outcome.diagnosis.causes] == ["lvdt_drift"]
 
 
+@pytest.mark.thorough
 def test_zeros_that_differ_between_recordings_are_a_drift() -> None:
-    outcome = diagnose(recordings([0.0, 0.004, 0.004, -0.003]), DesignModel())
+    outcome = diagnose(recordings([0.0, 0.004, 0.004, -0.003]), DesignModel(), (), UP_TO_TWO)
     assert [c.name for c in outcome.diagnosis.causes] == ["lvdt_drift"]
 
 
+@pytest.mark.thorough
 def test_a_drift_that_begins_anew_beside_a_zero_error_is_both() -> None:
     """Zeros of each recording's own would say it too, with more unknowns; either cause is needed for unseen rows."""
     found = recordings([0.004, 0.004, 0.004])
     drifting = [replace(r, position=r.position + 4e-5 * (r.time_s - r.time_s[0])) for r in found]
-    outcome = diagnose(drifting, DesignModel())
+    outcome = diagnose(drifting, DesignModel(), (), UP_TO_TWO)
     causes = {c.name: c.heldout_gap_without for c in outcome.diagnosis.causes}
     assert set(causes) == {"lvdt_drift", "lvdt_calibration"}
     assert all(gap is not None and gap > 1.5 * outcome.diagnosis.gap.after for gap in causes.values())

@@ -202,6 +202,7 @@ def test_dirt_in_a_port_lets_less_through_it(dirt: float, up: float, down: float
     np.testing.assert_allclose(pressure(Plant(D, (port,)), None), plain[grid.offsets], atol=1e-12)
 
 
+@pytest.mark.thorough
 def test_a_dirty_port_of_a_known_booster_is_named() -> None:
     known = plant(0.1, 0.15, 2.0)
     port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port"), (1.5,))

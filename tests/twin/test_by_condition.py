@@ -48,6 +48,7 @@ def creeping() -> StageResult:
     return searched(halves(a_record(CREEP, n=2400)))
 
 
+@pytest.mark.thorough
 def test_a_true_cause_carries_over_to_commands_that_no_fit_has_met(creeping: StageResult) -> None:
     found = apart(creeping)
     assert found is not None
@@ -67,6 +68,7 @@ def test_a_floor_with_motion_in_it_is_as_doubtful_here_as_elsewhere(creeping: St
     assert width("straight") > 1.2 * width("still")
 
 
+@pytest.mark.thorough
 def test_what_was_judged_on_a_look_predicts_all_rows(monkeypatch: pytest.MonkeyPatch, creeping: StageResult) -> None:
     monkeypatch.setattr(thin, "MOST_ROWS", 2000)
     monkeypatch.setattr(thin, "LOOK_ROWS", 1800)

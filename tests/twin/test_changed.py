@@ -89,6 +89,7 @@ def test_a_change_is_searched_from_what_the_design_has() -> None:
     assert lags == pytest.approx([0.1, 0.3, *LAG.parameters[0].starts])
 
 
+@pytest.mark.thorough
 def test_the_smallest_size_that_would_have_shown_is_that_of_a_change(slow: Recording) -> None:
     limits = []
     for record, design in ((a_record(Plant(DesignModel())), DesignModel()), (slow, worn(0.5))):

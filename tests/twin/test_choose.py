@@ -56,6 +56,7 @@ def test_a_wrong_design_number_is_not_called_an_effect(number: str, design: Desi
     assert [cause.name for cause in judgement.causes] == [f"parameter:{number}"]
 
 
+@pytest.mark.thorough
 def test_something_outside_the_vocabulary_is_unexplained() -> None:
     record = a_record(Plant(DesignModel()))
     wave = 0.02 * np.sin(2.0 * np.pi * record.time_s / 23.0)

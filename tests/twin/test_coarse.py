@@ -71,6 +71,7 @@ def test_a_margin_of_the_healthy_machine_blurs_the_edges() -> None:
     assert wide.coarse.beyond > 1.5 * case.coarse.beyond
 
 
+@pytest.mark.thorough
 def test_a_lag_a_tenth_of_a_step_large_is_found_and_none_where_there_is_none() -> None:
     for inserted in ((LATE,), ()):
         record = rounded(a_record(Plant(DesignModel(), inserted), twice=True))

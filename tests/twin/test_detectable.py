@@ -41,6 +41,7 @@ def test_a_threshold_is_found_and_never_undercut() -> None:
     assert smallest_shown(lambda size: 0.0, 0.01, 1.0) == float("inf")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("name", ["dead_time", "lvdt_nonlinearity", "sensor_lag"])
 def test_what_is_larger_than_the_limit_is_noticed_and_what_is_smaller_is_not(healthy: StageResult, name: str) -> None:
     case = healthy.case

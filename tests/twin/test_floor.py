@@ -159,6 +159,7 @@ def test_a_number_that_leaves_no_more_than_a_healthy_machine_needs_no_effect_bes
         assert plainer(findings, findings.fits[0], replace(RULES, within=within)).names == (name,)
 
 
+@pytest.mark.thorough
 def test_what_a_healthy_machine_does_anyway_is_not_named() -> None:
     creep = inserted("creep", "one_tail", 0.01, 30.0)
     healthy, record = a_record(Plant(DESIGN, (creep,))), a_record(Plant(replace(DESIGN, a1=8.88, a2=5.92), (creep,)))

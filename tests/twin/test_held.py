@@ -57,6 +57,7 @@ def test_a_replay_holds_what_the_record_held(stale: Recording) -> None:
     assert np.std(stale.position - again) < 0.5 * np.std(stale.position - plain)
 
 
+@pytest.mark.thorough
 def test_held_readings_are_a_candidate_only_where_they_are_seen(stale: Recording) -> None:
     for seen in (False, True):
         case = make_case([stale], DesignModel(), held=seen)
@@ -64,6 +65,7 @@ def test_held_readings_are_a_candidate_only_where_they_are_seen(stale: Recording
         assert ("as_seen" in {c.form.name for c in effect_causes(channel) if c.form}) is seen
 
 
+@pytest.mark.thorough
 def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None:
     case = make_case([stale], DesignModel(), held=True)
     result = judge(case, SearchRules(most=2), DecisionRules(), lambda _w, _s: None)

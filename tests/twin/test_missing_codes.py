@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from tests.twin.judged import a_record
+from tests.twin.judged import UP_TO_TWO, a_record
 from twin.diagnose import diagnose
 from twin.events.scan import scan_events
 from twin.noise.lattice import missing_codes, rounding_bias, rounding_error
@@ -47,12 +47,13 @@ def test_a_code_that_chance_left_out_is_not_missing() -> None:
     assert rounding_error(seen, STEP) == pytest.approx(1.0 / 12.0) and rounding_bias(seen, STEP) == 0.0
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("every", [3, 5])
 def test_nothing_else_is_named_for_missing_codes(every: int) -> None:
     made = a_record(Plant(DesignModel()), n=2400)
     record = replace(made, position=read(made.position, every))
     assert not scan_events(record, estimate_noise([record])).false_position.any()
-    diagnosis = diagnose([record], DesignModel()).diagnosis
+    diagnosis = diagnose([record], DesignModel(), (), UP_TO_TWO).diagnosis
     assert [c.name for c in diagnosis.causes] == ["sensor_quantization"]
     assert any("codes of the position never occur" in note.what for note in diagnosis.data_quality)
 

@@ -12,7 +12,7 @@ from scipy.signal import lti, step
 
 from control.design import DesignModel
 from logs.recording import Recording
-from tests.twin.judged import a_record
+from tests.twin.judged import UP_TO_TWO, a_record
 from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import Decision, DecisionRules
@@ -54,6 +54,7 @@ def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: s
     assert words in found.statement
 
 
+@pytest.mark.thorough
 def test_what_it_resembles_is_named_as_before() -> None:
     for name, form, values in (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,))):
         found = answered(a_record(with_form(name, form, *values))).diagnosis
@@ -64,10 +65,11 @@ def test_beside_a_cause_that_explains_without_it_a_rival_is_not_heard() -> None:
     """A small jump beside a large lag: the lag is named."""
     large = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.9,))
     plant = with_form("lvdt_drift", "jump", 0.001, 0.5)
-    found = diagnose([a_record(Plant(DESIGN, (large, *plant.inserted)))], DESIGN).diagnosis
+    found = diagnose([a_record(Plant(DESIGN, (large, *plant.inserted)))], DESIGN, (), UP_TO_TWO).diagnosis
     assert {c.name for c in found.causes} & {"additional_lag", "sensor_lag"}
 
 
+@pytest.mark.thorough
 def test_no_rival_is_in_an_updated_model() -> None:
     rivals = {(e.name, f.name) for e in effects().values() for f in e.forms if f.outside}
     assert rivals == {("lvdt_drift", "jump"), ("lvdt_drift", "jump_each"), ("dead_time", "rings")}
@@ -94,6 +96,7 @@ def test_a_jump_happens_once_in_all_recordings() -> None:
     assert plant.coefficients(100.0, shared).course_s == (400.0, 500.0)
 
 
+@pytest.mark.thorough
 def test_a_zero_that_jumps_in_each_recording_is_no_drift() -> None:
     """After 30 s in one and in the other; in a part of a recording that began before, sooner."""
     plant = with_form("lvdt_drift", "jump_each", 0.02, 30.0)

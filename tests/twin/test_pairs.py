@@ -6,6 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -74,6 +75,7 @@ def test_pairs_are_tried_in_the_forms_that_did_not_do_best_alone() -> None:
     assert in_other_forms([both, number], tried, 0) == []
 
 
+@pytest.mark.thorough
 def test_a_pair_is_found_of_which_neither_form_did_best_beside_the_other_ones_best() -> None:
     stop = Inserted("reduced_travel", effect("reduced_travel").form("lower_stop"), (0.0275,))
     loose = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.02,))
@@ -110,6 +112,7 @@ def test_a_wrong_number_beside_an_effect_is_named() -> None:
     assert set(decide(findings, DecisionRules()).names) == {"creep", "parameter:rate_limit"}
 
 
+@pytest.mark.thorough
 def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
     # Whatever the dice do is in no vocabulary; it repeats nowhere, and no two causes make a dent in it.
     trial, _ = trial_of(Plant(DESIGN), staircase()[:2000])
@@ -123,6 +126,7 @@ def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
     assert 3 in {len(f.names) for f in bold}
 
 
+@pytest.mark.thorough
 def test_a_third_cause_is_not_looked_for_where_it_would_not_be_accepted() -> None:
     assert SearchRules().scant == DecisionRules().share
     lag = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.9,))

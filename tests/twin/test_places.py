@@ -9,6 +9,7 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import Recording
+from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import staircase, trial_of
 from twin.case import make_case
 from twin.catalog import effect
@@ -82,11 +83,12 @@ def test_the_parts_of_a_large_record_share_its_clock() -> None:
     assert [t.place.within_s for t in look.trials] == [t.place.since_s for t in look.trials]
 
 
+@pytest.mark.thorough
 def test_a_friction_that_drifts_through_two_recordings_is_told() -> None:
     plant = Plant(DESIGN, (Inserted("friction_drift", effect("friction_drift").form("linear"), (4e-4,)),))
     recording = trial_of(plant, staircase())[0].recording
     parts = [recording.slice(0, 1500), recording.slice(1800, 4000)]
-    outcome = diagnose(parts, DESIGN)
+    outcome = diagnose(parts, DESIGN, (), UP_TO_TWO)
     (cause,) = outcome.diagnosis.causes
     assert cause.name == "friction_drift"
     assert cause.parameters["rate"].value == pytest.approx(4e-4, rel=0.1)

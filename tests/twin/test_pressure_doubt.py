@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from control.design import DesignModel
@@ -29,6 +30,7 @@ def doubt(wander_psi: float) -> float:
     return pressure_doubt(case, position_channel(drive_by_measured(case, converter), case.sigma_y), converter)
 
 
+@pytest.mark.thorough
 def test_noise_of_the_readings_leaves_little_doubt_and_a_pressure_that_wanders_leaves_it() -> None:
     quiet, wandering = doubt(0.0), doubt(0.02)
     assert quiet < 2.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.twin.judged import a_record
+from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.loops import FRICTIONS, D, at_once, in_small_steps, plant, row_by_row
 from twin.diagnose import diagnose
 from twin.plant import Plant
@@ -30,8 +30,9 @@ def test_live_and_with_other_steps_as_at_once(friction: str) -> None:
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_it_is_told_from_a_tail_of_the_stem() -> None:
-    found = diagnose([a_record(relaxing("before the lag", 0.08, 20.0), seed=5)], D).diagnosis
+    found = diagnose([a_record(relaxing("before the lag", 0.08, 20.0), seed=5)], D, (), UP_TO_TWO).diagnosis
     assert [(c.name, c.form) for c in found.causes] == [("creep", "spring_tail")]
     assert found.causes[0].parameters["share"].value == pytest.approx(0.08, abs=0.01)
     assert found.causes[0].parameters["tail"].value == pytest.approx(20.0, rel=0.15)

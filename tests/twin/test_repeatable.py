@@ -10,6 +10,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
+from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
 from twin.diagnose import diagnose
@@ -56,28 +57,30 @@ def recorded(wander: float, late_s: float = 0.0) -> Recording:
     return replace(r, position=true + swing + rng.normal(0.0, 6e-4, r.n), pressure=noisy)
 
 
+@pytest.mark.thorough
 def test_a_loud_swing_that_does_not_repeat_is_unexplained_and_described() -> None:
     swinging = recorded(0.02)
     loud = disturbance(make_case([swinging], DESIGN))
     assert loud is not None
     assert loud.signal == "position"
-    found = diagnose([swinging], DesignModel()).diagnosis
+    found = diagnose([swinging], DesignModel(), (), UP_TO_TWO).diagnosis
     assert found.verdict == "unexplained"
     signature = found.residual_signature
     assert signature["strongest_frequency_hz"] == pytest.approx(1.0 / 17.3, rel=0.15)
     assert "does_not_repeat" in signature
 
 
+@pytest.mark.thorough
 def test_beside_a_measured_pressure_a_smaller_swing_shows() -> None:
     """Less than `LOUD` and `MATERIAL` ask for."""
     healthy = recorded(0.0)
     slow = gaussian_filter1d(np.random.default_rng(4).normal(0.0, 1.0, healthy.n), 25.0)
     restless = replace(healthy, position=healthy.position + 0.002 * slow / slow.std())
     assert disturbance(make_case([restless], DESIGN)) is None
-    found = diagnose([restless], DesignModel()).diagnosis
+    found = diagnose([restless], DesignModel(), (), UP_TO_TWO).diagnosis
     assert found.verdict == "unexplained"
     assert found.gap.before > 2.0 * found.gap.noise_floor
-    assert diagnose([replace(restless, pressure=None)], DesignModel()).diagnosis.verdict == "no_gap"
+    assert diagnose([replace(restless, pressure=None)], DesignModel(), (), UP_TO_TWO).diagnosis.verdict == "no_gap"
 
 
 def test_a_pressure_that_wanders_and_is_measured_is_no_disturbance() -> None:
@@ -97,7 +100,7 @@ def test_a_pressure_that_wanders_and_is_measured_is_no_disturbance() -> None:
 def test_a_healthy_valve_has_no_disturbance() -> None:
     healthy = recorded(0.0)
     assert disturbance(make_case([healthy], DESIGN)) is None
-    assert diagnose([healthy], DesignModel()).diagnosis.verdict == "no_gap"
+    assert diagnose([healthy], DesignModel(), (), UP_TO_TWO).diagnosis.verdict == "no_gap"
 
 
 def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> None:
@@ -114,6 +117,6 @@ def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> Non
 
 
 def test_timing_is_neither_a_cause_nor_in_the_model() -> None:
-    outcome = diagnose([recorded(0.0, 0.008)], DesignModel())
+    outcome = diagnose([recorded(0.0, 0.008)], DesignModel(), (), UP_TO_TWO)
     assert outcome.diagnosis.verdict == "no_gap"
     assert not outcome.model.effects

@@ -39,6 +39,7 @@ def test_file_tells_the_story_over_time(tmp_path: Path, monkeypatch: pytest.Monk
     assert not list(tmp_path.glob("*.partial"))
 
 
+@pytest.mark.thorough
 def test_loops_in_the_plane_share_their_rows(tmp_path: Path) -> None:
     from rerun.chunk import RrdReader
 

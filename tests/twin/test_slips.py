@@ -75,6 +75,7 @@ def test_numbers_start_far_off_too_unless_they_are_known_from_another_fit() -> N
     assert np.array_equal(start, known.z)
 
 
+@pytest.mark.thorough
 def test_a_lag_that_is_ten_times_too_short_is_a_wrong_number() -> None:
     _, judgement = judged(a_record(Plant(DesignModel())), replace(DesignModel(), ep_tau_s=0.035))
     assert [c.name for c in judgement.causes] == ["parameter:ep_tau"]

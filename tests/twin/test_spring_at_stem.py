@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from tests.twin.judged import a_record
+from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.loops import FRICTIONS, D, at_once, in_small_steps, plant, row_by_row, uneven_in_small_steps
 from twin.diagnose import diagnose
 from twin.plant import Plant
@@ -30,7 +30,8 @@ def test_its_lags_go_with_it(asymmetry: float) -> None:
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_it_is_told_from_a_stiffness_of_what_pulls_the_stem() -> None:
-    found = diagnose([a_record(uneven("before the lag", 0.05), seed=4)], D).diagnosis
+    found = diagnose([a_record(uneven("before the lag", 0.05), seed=4)], D, (), UP_TO_TWO).diagnosis
     assert [(c.name, c.form) for c in found.causes] == [("spring_asymmetry", "at_stem")]
     assert found.causes[0].parameters["asymmetry"].value == pytest.approx(0.05, abs=0.005)

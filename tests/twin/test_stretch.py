@@ -59,6 +59,7 @@ def test_it_begins_where_it_was_read_with_what_has_given_way_by_then(begun: floa
     assert position[-1] == pytest.approx(0.3 * 1.1 / (1.0 + 0.1 * begun), rel=2e-3)
 
 
+@pytest.mark.thorough
 def test_it_is_told_from_a_motion_part_of_which_comes_late() -> None:
     record = a_record(plant("before the lag", "creep", "stretch", (0.05, 30.0, 1.0)), seed=5)
     found = diagnose([record], D, (), Settings(search=SearchRules(most=2))).diagnosis

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.diagnose import diagnose
 from twin.plant import Plant
@@ -59,11 +60,12 @@ def test_an_answer_to_a_command_that_swings_is_no_swing() -> None:
     assert swing_of(error, (swept,)) is None
 
 
+@pytest.mark.thorough
 def test_a_pressure_that_swings_by_itself_is_unexplained() -> None:
     recording = trial_of(Plant(DESIGN), staircase()[:2500])[0].recording
     assert recording.pressure is not None
     ripple = 0.05 * np.sin(2.0 * np.pi * 0.21 * recording.time_s)
-    outcome = diagnose([replace(recording, pressure=recording.pressure + ripple)], DESIGN)
+    outcome = diagnose([replace(recording, pressure=recording.pressure + ripple)], DESIGN, (), UP_TO_TWO)
     assert outcome.diagnosis.verdict == "unexplained"
     signature = outcome.diagnosis.residual_signature
     assert signature is not None
@@ -84,14 +86,15 @@ def test_noise_with_or_without_a_memory_does_not_swing(memory: float) -> None:
     assert swing_of(error[:100], (replace(trial, recording=trial.recording.slice(0, 100)),)) is None
 
 
+@pytest.mark.thorough
 def test_a_healthy_valve_with_interference_is_unexplained_and_the_operator_told_where_to_look() -> None:
     recording = trial_of(Plant(DESIGN), staircase()[:2500])[0].recording
     hum = 0.003 * np.sin(2.0 * np.pi * 1.37 * recording.time_s)
-    outcome = diagnose([replace(recording, position=recording.position + hum)], DESIGN)
+    outcome = diagnose([replace(recording, position=recording.position + hum)], DESIGN, (), UP_TO_TWO)
     assert outcome.diagnosis.verdict == "unexplained"
     signature = outcome.diagnosis.residual_signature
     assert signature is not None
     swings = signature["swings"]
     assert isinstance(swings, dict) and swings["frequency_hz"] == pytest.approx(1.37, abs=1e-3)
     assert any("swings by itself" in note.what for note in outcome.diagnosis.data_quality)
-    assert diagnose([recording], DESIGN).diagnosis.verdict == "no_gap"
+    assert diagnose([recording], DESIGN, (), UP_TO_TWO).diagnosis.verdict == "no_gap"

@@ -9,6 +9,7 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import Recording
+from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
 from twin.choose.decide import DecisionRules, decide
@@ -39,11 +40,12 @@ def wandering(size_psi: float) -> Recording:
     return replace(r, pressure=read, position=position + dice.normal(0.0, 6e-4, r.n))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("size_psi", "verdict", "said"), [(0.004, "no_gap", True), (0.008, "no_gap", True), (0.02, "unexplained", False)]
 )
 def test_what_wanders_is_noise_while_it_is_small(size_psi: float, verdict: str, said: bool) -> None:
-    found = diagnose([wandering(size_psi)], DESIGN).diagnosis
+    found = diagnose([wandering(size_psi)], DESIGN, (), UP_TO_TWO).diagnosis
     assert found.verdict == verdict
     assert any("wandering" in note.handled for note in found.data_quality) is said
 

@@ -26,6 +26,7 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> list[dict[str, Any]]:
     ]
 
 
+@pytest.mark.thorough
 def test_the_frozen_valves_are_diagnosed(lines: list[dict[str, Any]]) -> None:
     answers = {line["trial"]: (line["label"]["kind"], line["verdict"], line["causes"]) for line in lines}
     assert {kind for kind, _, _ in answers.values()} == {"none", "effect", "parameter"}  # the draw has not changed
