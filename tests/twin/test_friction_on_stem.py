@@ -10,9 +10,11 @@ import pytest
 from logs.recording import FloatArray
 from tests.twin.loops import PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
 from twin.effect import Coefficients
+from twin.kernels.coupled import coupled_start
 from twin.kernels.valve import _widening
 from twin.place import Place
-from twin.plant import Plant
+from twin.plant import Plant, curve_tables
+from twin.slots import stem_stops
 
 GROWTH: dict[str, tuple[tuple[float, ...], Callable[[float, float], float]]] = {
     "wear_on_stem": ((0.25,), lambda _t, way: 0.25 * way),
@@ -63,3 +65,12 @@ def test_friction_that_shrinks_narrows_the_play() -> None:
     """There is none on the stem to take away: it is the play that has less."""
     falls = plant("before the lag", "friction_drift", "linear_on_stem", (-4e-3,))
     np.testing.assert_allclose(at_once(falls), at_once(plant("before the lag", "friction_drift", "linear", (-4e-3,))))
+
+
+def test_what_pulls_the_stem_begins_within_the_play_as_it_was_designed() -> None:
+    c = coefficients("linear_on_stem", (4e-3,), 100.0)
+    first, step, closing, opening = curve_tables(c)
+    what = (np.array([0.0, D.travel, *stem_stops(c.valve)]), (float(first), float(step), closing, opening))
+    state, _ = coupled_start(7.0, 0.4, c.valve, *what, (c.spreads, c.weights), c.stem_bends, (0.25, 0.25))
+    assert state[0] == pytest.approx(0.25)  # friction holds it
+    assert state[1] == pytest.approx(D.compliance * (7.0 - D.a2))
