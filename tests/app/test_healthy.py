@@ -41,6 +41,7 @@ def test_a_machine_that_is_as_it_always_was_has_no_gap(golden: Recording, tmp_pa
     assert "the design misses the healthy machine by" in said(document)
 
 
+@pytest.mark.thorough
 def test_what_has_changed_since_is_named_alone(golden: Recording, tmp_path: Path) -> None:
     """Without a design the healthy recordings give one."""
     healthy = write(tmp_path / "healthy.csv", columns_of(golden))

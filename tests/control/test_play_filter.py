@@ -50,6 +50,7 @@ def test_both_edges_are_learned(a1: float, a2: float) -> None:
         assert belief.edge_doubt_in(side) / k < 0.05
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("noise", [1.0, 4.0])
 def test_it_is_as_sure_as_it_may_be(noise: float) -> None:
     """Over seeds, the play output is within three standard deviations, and these are small."""

@@ -39,6 +39,7 @@ def answered(record: Recording) -> Outcome:
     return diagnose([record], DESIGN, (), Settings(search=SearchRules(most=2)))
 
 
+@pytest.mark.thorough
 def test_both_are_named_and_the_floor_is_that_of_the_resting_reading(drifting: Recording) -> None:
     assert estimate_noise([drifting]).position.source == "repeats"
     found = answered(drifting)

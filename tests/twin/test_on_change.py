@@ -87,6 +87,7 @@ def test_a_healthy_valve_that_is_reported_on_change_has_this_and_nothing_else() 
     assert found.causes[0].parameters["step"].value == pytest.approx(BAND_IN, rel=0.05)
 
 
+@pytest.mark.thorough
 def test_what_else_is_wrong_shows_beside_it() -> None:
     found = answered(reported(a_record(Plant(DESIGN, (LATE,)), twice=True))).diagnosis
     names = {c.name for c in found.causes}

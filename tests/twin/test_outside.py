@@ -40,6 +40,7 @@ def answered(*records: Recording) -> Outcome:
     return diagnose(list(records), DESIGN, settings=Settings(search=SearchRules(most=1)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("plant", "words"),
     [
@@ -61,6 +62,7 @@ def test_what_it_resembles_is_named_as_before() -> None:
         assert [c.name for c in found.causes] == [name]
 
 
+@pytest.mark.thorough
 def test_beside_a_cause_that_explains_without_it_a_rival_is_not_heard() -> None:
     """A small jump beside a large lag: the lag is named."""
     large = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.9,))

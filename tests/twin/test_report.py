@@ -75,6 +75,7 @@ def test_page_says_everything(page: str) -> None:
     assert "nan" not in re.sub(r"<style>.*?</style>", "", page, flags=re.S).lower().replace("nanos", "")
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("stage", "pictures"), [("ep", 5), ("sensor", 4)])
 def test_a_cause_in_the_converter_shows_in_a_picture_of_the_pressure(shown: Series, stage: str, pictures: int) -> None:
     assert shown.pressure is not None

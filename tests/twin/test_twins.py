@@ -75,6 +75,7 @@ def test_creep_has_no_sharp_offset_beside_it() -> None:
     assert together(form, Cause("parameter:rate_limit"))
 
 
+@pytest.mark.thorough
 def test_twins_of_whose_sizes_nothing_is_known_stay_as_the_record_has_them() -> None:
     bow = Inserted("nonlinear_spring", effect("nonlinear_spring").form("bow"), (0.3,))
     decision = judged(a_record(Plant(DesignModel(), (bow,))))[0].decisions[-1]
