@@ -15,7 +15,7 @@ from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import DecisionRules, decide
-from twin.choose.pairs import _gains, promising_pairs
+from twin.choose.pairs import _best_of_each, _gains, promising_pairs
 from twin.choose.reform import in_laws, in_other_forms
 from twin.choose.screen import make_screen
 from twin.choose.search import Searcher, SearchRules, _better_of_each
@@ -100,6 +100,22 @@ def test_the_promise_of_a_pair_is_what_it_takes_away(seed: int) -> None:
             moved = r + sizes[i, j] * directions[i] + sizes[j, i] * directions[j]
             np.testing.assert_allclose(gains[i, j], r @ r - moved @ moved, atol=1e-9)
             assert gains[i, j] >= -1e-9
+
+
+@given(st.lists(st.integers(0, 5), min_size=2, max_size=12), st.integers(0, 10_000))
+def test_the_best_of_every_two_names_is_what_a_plain_search_finds(which: list[int], seed: int) -> None:
+    effects = ("creep", "stiction", "sensor_lag", "lvdt_drift", "friction_drift", "dead_time")
+    causes = [Cause(effects[k], effect(effects[k]), effect(effects[k]).forms[n % 2 - 1]) for n, k in enumerate(which)]
+    gains = np.random.default_rng(seed).normal(size=(len(which), len(which)))
+    apart = {frozenset(effects[:2])}  # these two mean nothing beside each other
+    best: dict[frozenset[str], tuple[float, int, int]] = {}
+    for i in range(len(which)):
+        for j in range(i + 1, len(which)):
+            names = frozenset((causes[i].name, causes[j].name))
+            if len(names) == 2 and names not in apart:
+                best[names] = max(best.get(names, (-np.inf, 0, 0)), (float(gains[i, j]), i, j))
+    found = _best_of_each(causes, gains, lambda a, b: frozenset((a.name, b.name)) not in apart)
+    assert found == sorted(best.values(), reverse=True)
 
 
 def test_a_wrong_number_beside_an_effect_is_named() -> None:

@@ -53,7 +53,7 @@ def promising_pairs(
     """The best start of every pair of names, the most promising first.
 
     `screen` stands where the hypothesis without causes ended; `ended` are the causes fitted alone; `together` says
-    whether two causes mean something beside each other.
+    whether two causes mean something beside each other, whatever their forms.
     """
     moves = [move for some in pool.map(lambda c: _moves(screen, c, ended), causes) for move in some]
     if len(moves) < 2:

@@ -13,7 +13,7 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_TAU_FALL_S] *= 1.0 - values[0]
 
 
-def _ports(c: Coefficients, values: Sequence[float]) -> None:
+def _port(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_PORT_UP] *= 1.0 + max(-values[0], 0.0)
     c.ep[EP_PORT_DOWN] *= 1.0 + max(values[0], 0.0)
 
@@ -23,7 +23,7 @@ EFFECT = Effect(
     stage="ep",
     claim="Pressure rises and falls with different time constants.",
     equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
-    "port: only falling, or only rising, and with 1 + dirt; of a booster's flow (ep_rate_limit), if there is one",
+    "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
         Form(
@@ -52,10 +52,10 @@ EFFECT = Effect(
                     upper=12.0,
                     starts=(-2.0, -0.3, 0.3, 2.0),
                     scale=1.0,
-                    doc="by how much less the exhaust lets through, of what is left; negative: the supply",
+                    doc="the exhaust lets 1 / (1 + dirt) of the flow through; negative: the supply",
                 ),
             ),
-            _ports,
+            _port,
             by_pressure=True,
         ),
     ),
