@@ -31,6 +31,8 @@ _LOUD = 3.0
 _LEAST_STEP = 1e-3
 #: Held readings are an effect of their own when they are this share of all, with this much evidence [nats].
 _HELD, _HELD_NATS = 0.3, 100.0
+#: ... or this share, where far fewer than would by chance (this share of them) are held twice running.
+_CLOCKED, _AGAIN = 0.1, 0.5
 #: Share of readings that repeat the one before, above which the noise is taken from the others.
 _MOSTLY_HELD = 0.4
 #: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.
@@ -108,9 +110,15 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step)):
         accepted["sensor_quantization"] = dict(quantization.estimates)
     stale = _strongest(events, "stale_samples")
-    if stale.found and stale.log_likelihood_ratio > _HELD_NATS and stale.estimates["hold_fraction"].value > _HELD:
+    if stale.found and stale.log_likelihood_ratio > _HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     return Sensing(events, accepted, step, _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0)
+
+
+def _slow_refresh(stale: Evidence) -> bool:
+    """Whether readings are held by a slow refresh: so often, or, less often, never twice running as lost ones are."""
+    hold = stale.estimates["hold_fraction"].value
+    return hold > _HELD or (hold > _CLOCKED and stale.estimates["again"].ci95[1] < _AGAIN * hold)
 
 
 def _band(events: Sequence[Events], least: float) -> float:

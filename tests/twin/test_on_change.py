@@ -49,7 +49,7 @@ def walk(seed: int, size: int = 4000) -> FloatArray:
     return np.asarray(0.1 * np.sin(np.arange(size) / 50.0) + 0.001 * dice.normal(size=size))
 
 
-@settings(max_examples=25)
+@settings(max_examples=25, deadline=None)
 @given(st.floats(0.003, 0.02), st.integers(0, 100))
 def test_the_band_is_found(band: float, seed: int) -> None:
     y = walk(seed)

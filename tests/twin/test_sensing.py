@@ -48,3 +48,24 @@ def test_one_reading_far_off_is_enough_when_it_outweighs_the_noise_of_all() -> N
         position = recording.position.copy()
         position[1500] -= size_in
         assert ("sensor_dropouts" in found(replace(recording, position=position))) is named
+
+
+@pytest.mark.parametrize("period_rows", [1.15, 1.35])
+def test_a_refresh_hardly_slower_than_the_polls_never_holds_twice_running(period_rows: float) -> None:
+    recording = fast_moving()
+    source = np.floor(np.floor(np.arange(recording.n) / period_rows) * period_rows).astype(int)
+    assert "stale_samples" in found(replace(recording, position=recording.position[source]))
+
+
+def test_as_many_lost_replies_do_hold_twice_running() -> None:
+    recording = fast_moving()
+    lost = np.random.default_rng(7).random(recording.n) < 0.15
+    source = np.maximum.accumulate(np.where(lost, 0, np.arange(recording.n)))
+    assert "stale_samples" not in found(replace(recording, position=recording.position[source]))
+
+
+def fast_moving() -> Recording:
+    """Readings so fine that no two are alike by chance."""
+    recording = recorded()
+    noise = np.random.default_rng(3).normal(0.0, SIGMA, recording.n)
+    return replace(recording, position=recording.position + 0.1 * noise)

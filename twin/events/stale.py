@@ -7,8 +7,9 @@ the motion in between plus the difference of two noises. A held reading is equal
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 from scipy.special import ndtr
-from scipy.stats import chi2
+from scipy.stats import binomtest, chi2
 
 from logs.recording import FloatArray
 from twin.clock import clock_of
@@ -19,6 +20,7 @@ _MOST = 30_000  # pairs: more change nothing but the time
 _TINY = 1e-7
 _LOOK_S = 1.5  # how far to look for the motion, more than any refresh period to be found
 _REFINED = 30
+_MOVING = 0.05  # chance of being equal, below which a repeat is a held reading
 _SPREADS = (0.0, *np.geomspace(0.03, 3.0, 40))  # noise differences tried, in given sigmas
 
 
@@ -28,7 +30,9 @@ def stale_samples(
     """Evidence that the reading is refreshed more slowly than polled; `step` is its lattice spacing, if any.
 
     Estimates: `refresh_period` [s], `hold_fraction` (share of polls that found nothing new), `regularity` (1 for an
-    even refresh, about 0 for holds at random, which are lost replies rather than a slow refresh).
+    even refresh, about 0 for holds at random, which are lost replies rather than a slow refresh), `again` (share of the
+    repeats in motion that the next row repeats once more: the hold fraction for holds at random, none for a clock
+    that is nearly as fast as the polls).
     """
     known = np.isfinite(reading)
     t, y = time_s[known], reading[known]
@@ -46,6 +50,7 @@ def stale_samples(
         "refresh_period": _period(time_s, reading, period, (hold, low, high)),
         "hold_fraction": Estimate(hold, (low, high)),
         "regularity": Estimate(*_regularity(y)),
+        "again": _again(y, rows[(same > 0.0) & (chance < _MOVING)]),
     }
     return Evidence(effect, ratio, float(chi2.sf(2.0 * ratio, 1)) / 2.0 if ratio > 0 else 1.0, estimates)
 
@@ -112,6 +117,16 @@ def _best(
     for _ in range(_REFINED if hold > 0.0 else 0):  # from the grid's value on: a step of EM
         hold = float(np.mean(same * hold / (hold + (1.0 - hold) * chance)))
     return null, best[0], chance, hold
+
+
+def _again(y: FloatArray, repeats: npt.NDArray[np.int64]) -> Estimate:
+    """How many of the readings after a repeat are the same once more; with Wilson's interval."""
+    after = repeats[repeats < y.size - 2]
+    if not after.size:
+        return Estimate(0.0, (0.0, 1.0))
+    count = int(np.count_nonzero(y[after + 2] == y[after + 1]))
+    low, high = binomtest(count, after.size).proportion_ci(method="wilson")
+    return Estimate(count / after.size, (float(low), float(high)))
 
 
 def _regularity(y: FloatArray) -> tuple[float, tuple[float, float]]:
