@@ -41,7 +41,9 @@ EP_DAMPING = 23  # and its damping ratio, below 1
 EP_NOMINAL = 24  # supply with which EP_FULL_UP is the slope [pressure]
 EP_PORT_UP = 25  # by how much the flow that fills is less, of a booster or of the converter itself [-]
 EP_PORT_DOWN = 26  # and that which exhausts
-EP_COUNT = 27
+EP_KNEE = 27  # how far below and above the supply the knee of a goal that nears it softly reaches [pressure]; 0: sharp
+EP_LEAK = 28  # flow per error inside an overlap band, as a share of that outside [-]
+EP_COUNT = 29
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import exp, inf
+from math import exp, inf, log
 
 import numpy as np
 import numpy.typing as npt
@@ -33,6 +33,9 @@ class PlainValve:
     hold_band: float = 0.0
     pressure_rate: float = inf
     supply: float = inf
+    knee: float = 0.0
+    overlap: float = 0.0  # and the flow within it as a share of that outside
+    leak: float = 0.0
     tank: float = inf  # a supply that sinks by 0.4 of every rise and comes back in 20 s
     cut_off: float = inf
     a1: float = 8.78
@@ -83,7 +86,7 @@ class PlainValve:
             t = i * step_s
             held = u if abs(u - held) > self.hold_band else held
             before = p
-            p = self._pressure(p, min(self.zero + self.gain * held, self.supply, self.tank - sunk), step_s)
+            p = self._pressure(p, min(self._softly(self.zero + self.gain * held), self.tank - sunk), step_s)
             sunk += 0.4 * max(p - before, 0.0) - sunk * step_s / 20.0
             w = self._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
@@ -103,9 +106,17 @@ class PlainValve:
 
     def _pressure(self, p: float, goal: float, step_s: float) -> float:
         tau = self.ep_tau * (self.rise if goal > p else self.fall)
-        new = goal + (p - goal) * exp(-step_s / tau)
+        error = goal - p
+        flow = error - max(-self.overlap, min(error, self.overlap)) + self.leak * error
+        new = p + flow * (1.0 - exp(-step_s / tau))
         reach = self.pressure_rate * step_s
         return min(max(p - reach, min(p + reach, new)), self.cut_off)
+
+    def _softly(self, goal: float) -> float:
+        """-knee ln(exp(-goal / knee) + exp(-supply / knee))."""
+        if self.knee == 0.0:
+            return min(goal, self.supply)
+        return -self.knee * log(exp(-goal / self.knee) + exp(-self.supply / self.knee))
 
     def _play(self, p: float, w: float, t: float, grip: float, stretch: float) -> float:
         """The next play output: on the closing curve at least, on the opening curve at most, else where it was."""

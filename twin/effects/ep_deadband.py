@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Apply, Coefficients, Effect, Form, Parameter
-from twin.slots import EP_BAND, EP_BAND_MODE
+from twin.slots import EP_BAND, EP_BAND_MODE, EP_LEAK
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400
@@ -35,17 +35,39 @@ def _mode(mode: float) -> Apply:
     return apply
 
 
+def _leaks(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_BAND, EP_LEAK]] = values
+    c.ep[EP_BAND_MODE] = 3.0 if values[0] > 0.0 else 0.0
+
+
+_LEAK = Parameter(
+    name="leak",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.02, 0.15),
+    scale=0.1,
+    doc="flow for each unit of the error inside the band, as a share of that outside",
+    size=False,
+)
+
 EFFECT = Effect(
     name="ep_deadband",
     stage="ep",
     claim="The converter ignores command changes inside a band.",
     equations="hold: the goal v follows u when |u - v| > band; play: v = max(u - band, min(u + band, v)); "
-    "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full)",
+    "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full); "
+    "overlap_leaking: tau dp/dt = e - max(-band, min(e, band)) + leak e, e = u - p",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (overlapped valves); IEC 61298-2 (dead band)",
     forms=(
         Form("hold", _band("command change from the last accepted command that is still ignored", False), _mode(1.0)),
         Form("play", _band("half width of the hysteresis between command and goal", True), _mode(2.0)),
         Form("overlap", _band("pressure error at which the pilot begins to open", True), _mode(3.0)),
+        Form(
+            "overlap_leaking",
+            (*_band("pressure error at which the pilot begins to open beyond its leak", True), _LEAK),
+            _leaks,
+        ),
         Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
     ),
     erratic=True,

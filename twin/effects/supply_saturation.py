@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_CLIP, EP_DRAW, EP_REFILL_S, EP_SUPPLY, EP_TANK
+from twin.slots import EP_CLIP, EP_DRAW, EP_KNEE, EP_REFILL_S, EP_SUPPLY, EP_TANK
 
 _SUPPLY = Parameter(
     name="supply",
@@ -22,6 +22,10 @@ _SUPPLY = Parameter(
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_SUPPLY] = values[0]
+
+
+def _soft(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_SUPPLY, EP_KNEE]] = values
 
 
 def _sinks(c: Coefficients, values: Sequence[float]) -> None:
@@ -53,6 +57,16 @@ _REFILL = Parameter(
     neutral=30.0,
     size=False,
 )
+_KNEE = Parameter(
+    name="knee",
+    kind="pressure",
+    lower=0.0,
+    upper=4.0,
+    starts=(0.15, 0.6),
+    scale=0.5,
+    doc="what is missing of the pressure at which the command is the supply, divided by ln 2",
+    size=False,
+)
 
 EFFECT = Effect(
     name="supply_saturation",
@@ -60,12 +74,15 @@ EFFECT = Effect(
     claim="Pressure cannot exceed what the air supply gives.",
     equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply, "
     "and through a booster only what ISO 6358 lets flow from that supply; "
-    "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction)",
+    "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction); "
+    "soft: dp/dt = (v - p) / tau, v = -knee ln(exp(-u / knee) + exp(-supply / knee)) (a regulator that runs out of "
+    "pressure difference little by little)",
     source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators); "
     "ISO 6358-1 (flow from a supply)",
     forms=(
         Form("ceiling", (_SUPPLY,), _apply),
         Form("cut_off", (_SUPPLY,), _clip),
+        Form("soft", (_SUPPLY, _KNEE), _soft),
         Form("sinking", (_SUPPLY, _DRAW, _REFILL), _sinks),
     ),
     twins=("ep_calibration",),

@@ -10,21 +10,21 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
+from twin.kernels.bounded import follow_bounded
 from twin.kernels.ringing import ringing_pass
 from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
     EP_DEAD_S,
-    EP_DRAW,
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
+    EP_KNEE,
     EP_PORT_DOWN,
     EP_PORT_UP,
     EP_RATE_DOWN,
     EP_RATE_UP,
-    EP_REFILL_S,
     EP_RINGS_S,
     EP_SLEW,
     EP_SUPPLY,
@@ -61,7 +61,7 @@ def ep_kernel(
         source, goal = goal, np.empty(goal.size)
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
-        goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+        goal = supplied(c[EP_ZERO] + c[EP_GAIN] * goal, c)
     if c[EP_SLEW] < FOREVER:
         source, goal = goal, np.empty(out.size)
         _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
@@ -74,9 +74,18 @@ def ep_kernel(
         return
     bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
     if bounded:
-        _follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
+        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
     else:
         _follow(time_s, offsets, goal, c, p0, out)
+
+
+def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:
+    """The goal below the supply: the smaller of the two, or with a knee a softened minimum of them."""
+    sharp = np.minimum(goal, c[EP_SUPPLY])
+    if c[EP_KNEE] <= 0.0:
+        return sharp
+    soft: FloatArray = sharp - c[EP_KNEE] * np.log1p(np.exp(-np.abs(goal - c[EP_SUPPLY]) / c[EP_KNEE]))
+    return soft
 
 
 def through_ports(c: FloatArray) -> FloatArray:
@@ -186,47 +195,4 @@ def _follow(
             if not per_row:
                 v = goal[f]
             p = v + (p - v) * (e_rise if v > p else e_fall)
-            out[f] = p
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
-    """Pressure after `h` seconds of a lag toward `v`, with overlap band and slope limits."""
-    mode = c[EP_BAND_MODE]
-    goal = v
-    if mode >= 3.0:
-        if abs(v - p) <= c[EP_BAND]:
-            return p
-        if mode == 3.0:
-            goal = v - c[EP_BAND] if v > p else v + c[EP_BAND]
-    tau_s = c[EP_TAU_RISE_S] if goal > p else c[EP_TAU_FALL_S]
-    new = goal if tau_s <= 0.0 else goal + (p - goal) * np.exp(-h / tau_s)
-    if mode == 4.0:
-        new = min(new, v - c[EP_BAND]) if v > p else max(new, v + c[EP_BAND])
-    bounded: float = min(c[EP_CLIP], max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new)))
-    return bounded
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _follow_bounded(
-    time_s: FloatArray,
-    offsets: np.ndarray,
-    goal: FloatArray,
-    c: FloatArray,
-    p0: float,
-    sunk: FloatArray,
-    out: FloatArray,
-) -> None:
-    """A lag toward the goal with an overlap band and limited slope; `sunk[0]`: how far the supply has sunk, kept."""
-    per_row = goal.size == time_s.size
-    p = p0
-    out[0] = p
-    for i in range(1, time_s.size):
-        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
-        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            v = min(goal[i] if per_row else goal[f], c[EP_TANK] - sunk[0])
-            new = _bounded_step(p, v, h, c)
-            if c[EP_TANK] < FOREVER:
-                sunk[0] = sunk[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
-            p = new
             out[f] = p

@@ -8,7 +8,16 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
-from twin.kernels.ep import _banded, _follow, _follow_bounded, _mean_command, _slewed, boosted, through_ports
+from twin.kernels.bounded import follow_bounded
+from twin.kernels.ep import (
+    _banded,
+    _follow,
+    _mean_command,
+    _slewed,
+    boosted,
+    supplied,
+    through_ports,
+)
 from twin.kernels.ringing import ringing_pass
 from twin.slots import (
     EP_AIR,
@@ -23,7 +32,6 @@ from twin.slots import (
     EP_RATE_UP,
     EP_RINGS_S,
     EP_SLEW,
-    EP_SUPPLY,
     EP_TANK,
     EP_ZERO,
     FOREVER,
@@ -54,7 +62,7 @@ class Converter:
         if self._booster is not None:
             booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
         elif self._bounded:
-            _follow_bounded(time_s, offsets, goal, self._c, self.pressure, self._sunk, out)
+            follow_bounded(time_s, offsets, goal, self._c, self.pressure, self._sunk, out)
         else:
             _follow(time_s, offsets, goal, self._c, self.pressure, out)
         self.pressure = float(out[-1])
@@ -78,7 +86,7 @@ class Converter:
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
             self._held = float(goal[-1])
-        goal = np.minimum(c[EP_ZERO] + c[EP_GAIN] * goal, c[EP_SUPPLY])
+        goal = supplied(c[EP_ZERO] + c[EP_GAIN] * goal, c)
         if c[EP_SLEW] < FOREVER:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._aim = _slewed(time_s, source, offsets, float(c[EP_SLEW]), self._aim, goal)
