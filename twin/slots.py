@@ -43,7 +43,10 @@ EP_PORT_UP = 25  # by how much the flow that fills is less, of a booster or of t
 EP_PORT_DOWN = 26  # and that which exhausts
 EP_KNEE = 27  # how far below and above the supply the knee of a goal that nears it softly reaches [pressure]; 0: sharp
 EP_LEAK = 28  # flow per error inside an overlap band, as a share of that outside [-]
-EP_COUNT = 29
+EP_QUICK = 29  # further flow of a quick exhaust per error beyond EP_CRACK, as a multiple of that of the port [-]
+EP_CRACK = 30  # error from which a falling pressure has it [pressure]
+EP_MIXED_S = 31  # lag of what comes out of a dead time [s]
+EP_COUNT = 32
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -36,6 +36,9 @@ class PlainValve:
     knee: float = 0.0
     overlap: float = 0.0  # and the flow within it as a share of that outside
     leak: float = 0.0
+    quick: float = 0.0  # further flow of an exhaust, and the error from which it flows
+    crack: float = 0.0
+    mixed: float = 0.0  # lag of the command as it comes out of the delay
     tank: float = inf  # a supply that sinks by 0.4 of every rise and comes back in 20 s
     cut_off: float = inf
     a1: float = 8.78
@@ -71,7 +74,7 @@ class PlainValve:
         rows = np.rint((time_s - time_s[0]) / step_s).astype(int)
         late = round(self.delay / step_s)
         fine = np.repeat(command[1:], np.diff(rows))
-        fine = np.concatenate([np.full(late, command[0]), fine])[: rows[-1]]
+        fine = self._mixing(np.concatenate([np.full(late, command[0]), fine])[: rows[-1]], step_s)
         p = held = command[0]
         free = replace(self, breakaway=0.0)
         w = v = free._play(
@@ -104,10 +107,19 @@ class PlainValve:
                 out_y.append(lagged)
         return np.array(out_p), np.array(out_y)
 
+    def _mixing(self, command: FloatArray, step_s: float) -> FloatArray:
+        """The command behind a lag."""
+        behind, out = float(command[0]), []
+        for u in command.tolist():
+            behind = u if self.mixed == 0.0 else behind + (u - behind) * step_s / self.mixed
+            out.append(behind)
+        return np.array(out)
+
     def _pressure(self, p: float, goal: float, step_s: float) -> float:
         tau = self.ep_tau * (self.rise if goal > p else self.fall)
         error = goal - p
         flow = error - max(-self.overlap, min(error, self.overlap)) + self.leak * error
+        flow += self.quick * min(error + self.crack, 0.0)
         new = p + flow * (1.0 - exp(-step_s / tau))
         reach = self.pressure_rate * step_s
         return min(max(p - reach, min(p + reach, new)), self.cut_off)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_PORT_DOWN, EP_PORT_UP, EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.slots import EP_CRACK, EP_PORT_DOWN, EP_PORT_UP, EP_QUICK, EP_TAU_FALL_S, EP_TAU_RISE_S
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -18,12 +18,37 @@ def _port(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_PORT_DOWN] *= 1.0 + max(values[0], 0.0)
 
 
+def _quick(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_QUICK, EP_CRACK]] = values
+
+
+_QUICK = Parameter(
+    name="quick",
+    kind="fraction",
+    lower=0.0,
+    upper=30.0,
+    starts=(0.3, 1.5),
+    scale=1.0,
+    doc="further flow of a quick exhaust for each unit of the error beyond its edge, over that of the port",
+)
+_CRACK = Parameter(
+    name="crack",
+    kind="pressure",
+    lower=0.0,
+    upper=4.0,
+    starts=(0.05, 0.3),
+    scale=0.3,
+    doc="how far the pressure is above its goal where the quick exhaust begins to open",
+    size=False,
+)
+
 EFFECT = Effect(
     name="fill_exhaust_asymmetry",
     stage="ep",
     claim="Pressure rises and falls with different time constants.",
     equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
-    "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead",
+    "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead; "
+    "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
         Form(
@@ -58,6 +83,7 @@ EFFECT = Effect(
             _port,
             by_pressure=True,
         ),
+        Form("quick_exhaust", (_QUICK, _CRACK), _quick),
     ),
     twins=("ep_rate_limit",),
     absorbs=("ep_tau",),

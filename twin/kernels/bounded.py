@@ -1,4 +1,4 @@
-"""The converter's lag toward its goal with an overlap band, limited slopes and a supply that sinks: a compiled pass."""
+"""The converter's lag with an overlap band, a quick exhaust, limited slopes, a supply that sinks: a compiled pass."""
 
 from __future__ import annotations
 
@@ -10,8 +10,10 @@ from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
+    EP_CRACK,
     EP_DRAW,
     EP_LEAK,
+    EP_QUICK,
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
@@ -23,34 +25,39 @@ from twin.slots import (
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _leaking_step(p: float, v: float, h: float, c: FloatArray) -> float:
-    """Pressure after `h` seconds of a lag whose gain within the band is a share of that outside; exact."""
-    tau_s = max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
-    band, leak = c[EP_BAND], c[EP_LEAK]
-    error = abs(v - p)
-    if error > band:
-        rate, rest = (1.0 + leak) / tau_s, band / (1.0 + leak)
-        inside_s = h - (np.log((error - rest) / (band - rest)) / rate if leak > 0.0 else np.inf)
+def _edged_step(error: float, edge: float, within: float, beyond: float, h: float) -> float:
+    """What is left of an error after `h` seconds; it shrinks at `within` of it and `beyond` of what is above an edge.
+
+    Exact; rates in 1/s.
+    """
+    if error > edge:
+        rate = within + beyond
+        rest = edge * beyond / rate
+        inside_s = h - np.log((error - rest) / (edge - rest)) / rate
         if inside_s <= 0.0:
-            error = rest + (error - rest) * np.exp(-rate * h)
-            return v - error if v > p else v + error
-        error, h = band, inside_s
-    error *= np.exp(-h * leak / tau_s)
-    return v - error if v > p else v + error
+            outside: float = rest + (error - rest) * np.exp(-rate * h)
+            return outside
+        error, h = edge, inside_s
+    inside: float = error * np.exp(-within * h)
+    return inside
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
-    """Pressure after `h` seconds of a lag toward `v`, with overlap band and slope limits."""
-    mode, goal = c[EP_BAND_MODE], v
-    if mode == 4.0 and abs(v - p) <= c[EP_BAND]:
+    """Pressure after `h` seconds of a lag toward `v`, with an overlap band or a quick exhaust, and slope limits."""
+    mode, error = c[EP_BAND_MODE], abs(v - p)
+    if mode == 4.0 and error <= c[EP_BAND]:
         return p
-    tau_s = c[EP_TAU_RISE_S] if goal > p else c[EP_TAU_FALL_S]
-    new = goal if tau_s <= 0.0 else goal + (p - goal) * np.exp(-h / tau_s)
+    rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
     if mode == 3.0:
-        new = _leaking_step(p, v, h, c)
+        error = _edged_step(error, c[EP_BAND], c[EP_LEAK] * rate, rate, h)
+    elif v < p and c[EP_QUICK] > 0.0:
+        error = _edged_step(error, c[EP_CRACK], rate, c[EP_QUICK] * rate, h)
+    else:
+        error *= np.exp(-rate * h)
     if mode == 4.0:
-        new = min(new, v - c[EP_BAND]) if v > p else max(new, v + c[EP_BAND])
+        error = max(error, c[EP_BAND])
+    new = v - error if v > p else v + error
     bounded: float = min(c[EP_CLIP], max(p - c[EP_RATE_DOWN] * h, min(p + c[EP_RATE_UP] * h, new)))
     return bounded
 

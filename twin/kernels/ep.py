@@ -21,8 +21,10 @@ from twin.slots import (
     EP_FULL_UP,
     EP_GAIN,
     EP_KNEE,
+    EP_MIXED_S,
     EP_PORT_DOWN,
     EP_PORT_UP,
+    EP_QUICK,
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_RINGS_S,
@@ -49,43 +51,48 @@ def ep_kernel(
 ) -> None:
     """Fills `out` (shape (offsets[-1] + 1,)) with the pressure; `offsets[i]` is the fine index of row i.
 
-    Without a delay the goal is constant within a row and has shape (n,), with one it has the shape of `out`.
     `stem`: where it is, of the shape of `out`, for a converter that it takes air from; None: it stands still, open.
     """
     c = through_ports(c)
-    goal = np.ascontiguousarray(command, dtype=np.float64)
+    goal = _goal(time_s, np.ascontiguousarray(command, dtype=np.float64), offsets, c, p0)
+    if boosted(c):
+        where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
+        booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
+    elif bounded(c):
+        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
+    else:
+        _follow(time_s, offsets, goal, c, p0, out)
+
+
+def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float) -> FloatArray:
+    """What the lag goes to: per row where it is constant within one, else fine, shape (offsets[-1] + 1,)."""
+    goal, size = command, int(offsets[-1]) + 1
     if c[EP_DEAD_S] > 0.0:
-        goal = np.empty(out.size)
-        _delayed(time_s, np.ascontiguousarray(command, dtype=np.float64), offsets, c[EP_DEAD_S], goal)
+        goal = np.empty(size)
+        _delayed(time_s, command, offsets, c[EP_DEAD_S], goal)
+    if c[EP_MIXED_S] > 0.0:
+        source, goal = goal, np.empty(size)
+        _mixed(time_s, source, offsets, c[EP_MIXED_S], command[0], goal)
     if c[EP_BAND_MODE] in (1.0, 2.0):
         source, goal = goal, np.empty(goal.size)
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
         goal = supplied(c[EP_ZERO] + c[EP_GAIN] * goal, c)
     if c[EP_SLEW] < FOREVER:
-        source, goal = goal, np.empty(out.size)
+        source, goal = goal, np.empty(size)
         _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
     if c[EP_RINGS_S] > 0.0:
-        source, goal = goal, np.empty(out.size)
+        source, goal = goal, np.empty(size)
         ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
-    if boosted(c):
-        where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
-        booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
-        return
-    bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
-    if bounded:
-        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
-    else:
-        _follow(time_s, offsets, goal, c, p0, out)
+    return goal
 
 
 def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:
     """The goal below the supply: the smaller of the two, or with a knee a softened minimum of them."""
-    sharp = np.minimum(goal, c[EP_SUPPLY])
-    if c[EP_KNEE] <= 0.0:
-        return sharp
-    soft: FloatArray = sharp - c[EP_KNEE] * np.log1p(np.exp(-np.abs(goal - c[EP_SUPPLY]) / c[EP_KNEE]))
-    return soft
+    most: FloatArray = np.minimum(goal, c[EP_SUPPLY])
+    if c[EP_KNEE] > 0.0:
+        most -= c[EP_KNEE] * np.log1p(np.exp(-np.abs(goal - c[EP_SUPPLY]) / c[EP_KNEE]))
+    return most
 
 
 def through_ports(c: FloatArray) -> FloatArray:
@@ -99,6 +106,12 @@ def through_ports(c: FloatArray) -> FloatArray:
     else:
         narrow[[EP_TAU_RISE_S, EP_TAU_FALL_S]] *= ports
     return narrow
+
+
+def bounded(c: FloatArray) -> bool:
+    """Whether the lag toward the goal is more than a lag: an overlap, a quick exhaust, a limit."""
+    limited = min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
+    return bool(limited or c[EP_BAND_MODE] >= 3.0 or c[EP_QUICK] > 0.0)
 
 
 def boosted(c: FloatArray) -> bool:
@@ -171,6 +184,26 @@ def _slewed(
             held = max(held - step, min(held + step, wanted))
             on_way = abs(held - before) / step  # share of the step that it moves
             out[f] = held - 0.5 * on_way * (held - before)
+    return held
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _mixed(
+    time_s: FloatArray, goal: FloatArray, offsets: np.ndarray, mixed_s: float, start: float, out: FloatArray
+) -> float:
+    """Fills `out` (fine) with a goal, per row or fine, behind a lag: its mean over each fine step; exact.
+
+    Returns where it stands at the end.
+    """
+    per_row, held = goal.size == time_s.size, start
+    out[0] = held
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        left = np.exp(-h / mixed_s)
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            wanted = goal[i] if per_row else goal[f]
+            out[f] = wanted + (held - wanted) * (1.0 - left) * mixed_s / h
+            held = wanted + (held - wanted) * left
     return held
 
 

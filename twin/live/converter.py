@@ -13,8 +13,10 @@ from twin.kernels.ep import (
     _banded,
     _follow,
     _mean_command,
+    _mixed,
     _slewed,
     boosted,
+    bounded,
     supplied,
     through_ports,
 )
@@ -25,14 +27,11 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
-    EP_CLIP,
     EP_DEAD_S,
     EP_GAIN,
-    EP_RATE_DOWN,
-    EP_RATE_UP,
+    EP_MIXED_S,
     EP_RINGS_S,
     EP_SLEW,
-    EP_TANK,
     EP_ZERO,
     FOREVER,
 )
@@ -46,8 +45,8 @@ class Converter:
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
-        bounded = c[EP_BAND_MODE] >= 3.0 or min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
-        self._bounded = bool(bounded)
+        self._mixed = command
+        self._bounded = bounded(c)
         self._aim, self._ringing = p0, np.array([p0, 0.0])
         self._sunk = np.zeros(1)
         self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
@@ -82,6 +81,9 @@ class Converter:
         goal = np.array([command, command])
         if c[EP_DEAD_S] > 0.0:
             goal = self._delayed(time_s, offsets, command)
+        if c[EP_MIXED_S] > 0.0:
+            source, goal = goal, np.empty(int(offsets[1]) + 1)
+            self._mixed = _mixed(time_s, source, offsets, float(c[EP_MIXED_S]), self._mixed, goal)
         if c[EP_BAND_MODE] in (1.0, 2.0):
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
