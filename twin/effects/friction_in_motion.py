@@ -54,6 +54,18 @@ _SPEED = Parameter(
 )
 
 
+_LOAD = Parameter(
+    name="load",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.03, 0.2),
+    scale=0.3,
+    doc="by how much friction is more at full pressure than at least pressure, over its mean",
+    size=False,
+)
+
+
 def _beyond(where: str) -> Parameter:
     return Parameter(
         name=f"beyond_{where}",
@@ -95,8 +107,22 @@ def _met_at_speed(c: Coefficients) -> None:
 
 def _elastic(c: Coefficients, values: Sequence[float]) -> None:
     _full(c, values)
-    presliding, below, above = values
-    c.valve[V_PRESLIDING] = presliding
+    c.valve[V_PRESLIDING] = values[0]
+    _soft_stops(c, *values[1:])
+
+
+def _loaded(c: Coefficients, values: Sequence[float]) -> None:
+    share, load, below, above = values
+    _partial(c, values)
+    if share > 0.0:
+        more = 0.5 * c.design.deadband * share * load * (c.xi - 0.5)
+        c.close_shift += more
+        c.open_shift -= more
+        _soft_stops(c, below, above)
+
+
+def _soft_stops(c: Coefficients, below: float, above: float) -> None:
+    """Forces may balance so far beyond the stops, which hold the stem."""
     c.valve[V_HARD_LOW] = max(c.valve[V_HARD_LOW], c.valve[V_LOW])
     c.valve[V_HARD_HIGH] = min(c.valve[V_HARD_HIGH], c.valve[V_HIGH])
     c.valve[V_LOW] -= below
@@ -120,7 +146,8 @@ EFFECT = Effect(
     claim="The stem stops when the pressure reverses instead of coasting to its play target.",
     equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a play of (1 - share) (a1 - a2) comes before; "
     "rounded: tau v + share k (a1 - a2) / 2 tanh(v / speed) = k (p - (a1 + a2) / 2) - x behind that play; elastic: "
-    "friction turns over a distance, w is held only beyond the stops, x at the stops",
+    "friction turns over a distance, w is held only beyond the stops, x at the stops; "
+    "partial_loaded: as partial, with friction in proportion to 1 + load (w / travel - 1/2) and such stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
     "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007) 580 (rounded)",
     forms=(
@@ -130,6 +157,7 @@ EFFECT = Effect(
         Form("rounded", (_SHARE, _SPEED), _rounded),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),
+        Form("partial_loaded", (_SHARE, _LOAD, _beyond("lower"), _beyond("upper")), _loaded),
     ),
     absorbs=("tau",),
 )
