@@ -100,7 +100,10 @@ V_STRETCHES = (
     47  # 1: what creeps is added to the stem, up to its stops, and is not a part of its motion that comes late
 )
 V_STRETCHED = 48  # what there is of that at the start [-]
-V_COUNT = 49
+V_SQUARED_S = (
+    49  # what drag adds to the lag of a stem that closes, and (50) opens, for each unit of speed [s2/position]
+)
+V_COUNT = 51
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -136,7 +139,11 @@ S_JUMP = S_OTHER + 1  # by how much the zero jumps [position], and when [s]
 S_JUMP_S = S_JUMP + 1
 S_WINDOW_S = S_JUMP_S + 1  # over how long the reading is averaged [s]; 0: it is not
 S_WINDOWS = S_WINDOW_S + 1  # how often, one after the other
-S_COUNT = S_WINDOWS + 1
+S_TABLE = S_WINDOWS + 1  # errors of a table, evenly spaced between the ends of travel [fraction of travel]
+TABLE = 11
+S_ROOT = S_TABLE + TABLE  # drift of the zero with the root of time [position/s^0.5]
+S_ROOT_SINCE_S = S_ROOT + 1  # and how much of that time has been [s]
+S_COUNT = S_ROOT_SINCE_S + 1
 
 FOREVER = 1e30
 

@@ -77,9 +77,12 @@ def in_small_steps(
     drag: tuple[float, float] = (0.0, 0.0),
     relax: tuple[float, float] = (0.0, 1.0),
     asymmetry: float = 0.0,
+    throttled: tuple[float, float] = (0.0, 0.0),
 ) -> FloatArray:
     """dx/dt = (clip(w - tau drag dx/dt) - x) / tau, solved for dx/dt, behind a spring that takes `relax[0]` more at
     first and lets go of it with the time constant `relax[1]`, and that is less stiff closing by a share `asymmetry`.
+
+    `throttled`: drag of the square of the speed, as a share of tau at the highest speed, closing and opening.
     """
     time_s = np.arange(0.0, TIME_S[-1] + SMALL_S, SMALL_S)
     x, w, late, found = 0.0, 0.0, 0.0, np.empty(time_s.size)
@@ -90,8 +93,9 @@ def in_small_steps(
         bottom, top = bottom + asymmetry * x, top - asymmetry * x
         w = max(bottom, min(top, w if friction == "before the lag" else x))
         closes = w > x
-        stop, share = (D.travel, drag[0]) if closes else (0.0, drag[1])
-        speed = min(abs(w - x) / (1.0 + share), abs(stop - x)) / D.tau_s
+        stop, share, square = (D.travel, drag[0], throttled[0]) if closes else (0.0, drag[1], throttled[1])
+        free = max(np.roots([square * D.tau_s / D.rate_limit, (1.0 + share) * D.tau_s, -abs(w - x)]).real)
+        speed = min(free, abs(stop - x) / D.tau_s)
         x += SMALL_S * min(speed, D.rate_limit) * (1.0 if closes else -1.0)
         late += SMALL_S / relax[1] * (x - late)
         w = min(D.travel, max(0.0, w))

@@ -10,7 +10,7 @@ import pytest
 from logs.recording import FloatArray
 from tests.twin.loops import PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
 from twin.effect import Coefficients
-from twin.kernels.coupled import coupled_start
+from twin.kernels.coupled_start import coupled_start
 from twin.kernels.valve import _widening
 from twin.place import Place
 from twin.plant import Plant, curve_tables

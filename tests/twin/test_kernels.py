@@ -52,6 +52,16 @@ def softer(x: float) -> float:
     return 0.3 * (x / TRAVEL - 0.5)
 
 
+TABLE = (0.01, -0.02, 0.0, 0.015, 0.03, 0.0, -0.03, 0.01, 0.0, 0.02, -0.01)
+
+
+def tabled(x: float, _t: float) -> float:
+    where = 12.0 * x / DESIGN.travel
+    k = min(max(int(where), 0), 11)
+    entries = (0.0, *TABLE, 0.0)
+    return x + DESIGN.travel * (entries[k] + (where - k) * (entries[k + 1] - entries[k]))
+
+
 def curved(x: float, _t: float) -> float:
     return x + TRAVEL * 0.02 * 4.0 * (x / TRAVEL) * (1.0 - x / TRAVEL)
 
@@ -102,6 +112,8 @@ SAME = {
     "lvdt_gain": (plant_with("lvdt_calibration", "gain_and_zero", 0.03, 0.01), PlainValve(reading=steeper)),
     "lvdt_bow": (plant_with("lvdt_nonlinearity", "bow", 0.02), PlainValve(reading=curved)),
     "lvdt_drift": (plant_with("lvdt_drift", "linear", 2e-4), PlainValve(reading=lambda x, t: x + 2e-4 * t)),
+    "lvdt_root": (plant_with("lvdt_drift", "root", 0.3), PlainValve(reading=lambda x, t: x + 0.3 * (t / 810.0) ** 0.5)),
+    "lvdt_table": (plant_with("lvdt_nonlinearity", "table", *TABLE), PlainValve(reading=tabled)),
     "lvdt_wander": (plant_with("lvdt_drift", "wander", *WAVE), PlainValve(reading=waving)),
     "linkage": (plant_with("linkage_lost_motion", "play", 0.02), PlainValve(sensor_play=0.02)),
     "sensor_lag": (plant_with("sensor_lag", "first_order", 0.6), PlainValve(sensor_lag=0.6)),

@@ -11,6 +11,7 @@ from twin.slots import (
     V_DRAG_OPEN_S,
     V_RATE_CLOSE,
     V_RATE_OPEN,
+    V_SQUARED_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
 )
@@ -46,6 +47,17 @@ def _drag_each_way(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_DRAG_OPEN_S] += values[1] * c.valve[V_TAU_OPEN_S]
 
 
+def _orifice(c: Coefficients, values: Sequence[float]) -> None:
+    # Throttled oil or air holds with the square of the speed, and takes pressure likewise.
+    c.valve[V_SQUARED_S] += values[0] * c.valve[V_TAU_CLOSE_S] / c.design.rate_limit
+    c.valve[V_SQUARED_S + 1] += values[1] * c.valve[V_TAU_OPEN_S] / c.design.rate_limit
+
+
+def _throttled(way: str) -> Parameter:
+    doc = f"drag with the square of the speed {way}, at the design's highest speed, over that with the speed"
+    return replace(_parameter(way, doc), lower=0.0, upper=9.0, starts=(0.1, 1.0), scale=0.5)
+
+
 def _drag(way: str) -> Parameter:
     doc = f"what drag adds to the time constant {way}, as a share of it, as long as no stop limits the pull"
     return replace(_parameter(way, doc), starts=(-0.3, -0.03, 0.03, 0.3), scale=0.3)
@@ -60,13 +72,15 @@ EFFECT = Effect(
     stage="actuator",
     claim="The time constants closing and opening differ.",
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
-    "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way",
+    "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
+    "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit",
     source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967); "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (viscous friction)",
     forms=(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
+        Form("orifice_each_way", (_throttled("closing"), _throttled("opening")), _orifice),
     ),
     absorbs=("tau",),
 )

@@ -21,6 +21,8 @@ from twin.slots import (
     S_JUMP,
     S_JUMP_S,
     S_KNOTS,
+    S_ROOT,
+    S_ROOT_SINCE_S,
     S_WANDER_S,
     S_ZERO,
 )
@@ -43,6 +45,7 @@ _CHANGE = Parameter(
     scale=0.01,
     doc="change of the zero in the end",
 )
+_QUARTER = replace(_CHANGE, doc="change of the zero over the first 300 time constants of the stem")
 _SETTLING = Parameter(
     name="settling",
     kind="time",
@@ -126,6 +129,11 @@ def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_ZERO] += values[0] - left
 
 
+def _root(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_ROOT, S_ROOT_SINCE_S]] = values[0] / (300.0 * c.design.tau_s) ** 0.5, c.since_s
+    c.sensor[S_ZERO] += c.sensor[S_ROOT] * np.sqrt(c.since_s)
+
+
 def _cycle(c: Coefficients, values: Sequence[float]) -> None:
     there, along, period_s = values
     phase = 2.0 * np.pi * c.since_s / period_s
@@ -187,13 +195,14 @@ EFFECT = Effect(
     name="lvdt_drift",
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
-    equations="y = x + rate t, or x + change (1 - exp(-t / settling)), "
+    equations="y = x + rate t, or x + change (1 - exp(-t / settling)), or x + change (t / 300 tau)^0.5 (root), "
     "or x + there (1 - cos) + along sin (2 pi t / period), or x + a spline through its value at ten times, "
     "or x + a curve of each recording's own through up to five values (apart); a jump is no drift, only told from it",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(
         Form("linear", (_RATE,), _linear),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
+        Form("root", (_QUARTER,), _root),
         Form("cycle", (_THERE, _ALONG, _PERIOD), _cycle),
         Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),

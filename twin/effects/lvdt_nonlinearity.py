@@ -5,8 +5,21 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_AT_OPEN, S_BOW, S_FROM, S_GAIN, S_LEAVES, S_OTHER, S_SWING, S_TRAVEL, S_ZERO
+from logs.recording import FloatArray
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.slots import (
+    S_AT_OPEN,
+    S_BOW,
+    S_FROM,
+    S_GAIN,
+    S_LEAVES,
+    S_OTHER,
+    S_SWING,
+    S_TABLE,
+    S_TRAVEL,
+    S_ZERO,
+    TABLE,
+)
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -120,13 +133,32 @@ def _leaves_both(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_LEAVES, S_OTHER, S_FROM]] = values[0], values[1], 0.5 + 0.5 * values[2]
 
 
+_ENTRIES = tuple(
+    _parameter(
+        f"at_{round(100 * k / (TABLE + 1))}",
+        f"excess of the reading at {k}/{TABLE + 1} of the travel, fraction of travel",
+    )
+    for k in range(1, TABLE + 1)
+)
+
+
+def _table(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_TABLE : S_TABLE + TABLE] = values
+
+
+def _uneven(_time_s: FloatArray, _reading: FloatArray, _scales: Scales) -> list[tuple[float, ...]]:
+    """Every second entry too high: from there a least squares finds all of them."""
+    return [tuple(0.005 if k % 2 == odd else -0.005 for k in range(TABLE)) for odd in (0, 1)]
+
+
 EFFECT = Effect(
     name="lvdt_nonlinearity",
     stage="sensor",
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
     "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: u^3 - line u; leaves_range_*: "
-    "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there",
+    "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there; "
+    "table: straight between entries",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -139,6 +171,7 @@ EFFECT = Effect(
         Form("leaves_range_closed", _leaving("closed"), _leaves_closed),
         Form("leaves_range_open", _leaving("open"), _leaves_open),
         Form("leaves_range_both", (_bend("closed"), _other_bend(), _middle()), _leaves_both),
+        Form("table", _ENTRIES, _table, _uneven),
     ),
     twins=("nonlinear_spring", "flow_force"),
     absorbs=("compliance", "offset"),

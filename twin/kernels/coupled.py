@@ -1,4 +1,4 @@
-"""Play and stem in one loop, for effects in which the target depends on how the stem moves.
+"""Play and stem in one loop (from `coupled_start`), for effects in which the target depends on how the stem moves.
 
 Friction in the force balance or on the stem, breakaway, friction that falls or grows with speed, wear, a spring that
 relaxes, forces by where the stem is. Small functions stand here once more on purpose: a compiled cache notices edits
@@ -27,6 +27,7 @@ from twin.slots import (
     V_RELAX,
     V_RELAX_TAU_S,
     V_SHORT,
+    V_SQUARED_S,
     V_STICK_SPEED,
     V_STRIBECK,
     V_STRIBECK_SPEED,
@@ -67,6 +68,15 @@ def _lags(h: float, c: FloatArray) -> tuple[tuple[Pair, Pair], tuple[Pair, Pair]
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _throttled(h: float, c: FloatArray, way: int, pull: float, drag: Pair) -> Pair:
+    """`drag` over `h`, or where it grows with the speed what the law has at the speed that so far a pull makes."""
+    if c[V_SQUARED_S + way] <= 0.0:
+        return drag
+    tau_s = c[V_TAU_CLOSE_S + way] + c[V_DRAG_CLOSE_S + way]
+    return _decay(h, 0.5 * (tau_s + np.sqrt(tau_s * tau_s + 4.0 * c[V_SQUARED_S + way] * abs(pull))))
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _toward(x: float, w_a: float, w_b: float, lag: tuple[float, float]) -> float:
     """Exact step of a lag for an input linear from w_a to w_b."""
     slope_tau = (w_b - w_a) * lag[1]
@@ -78,8 +88,7 @@ def _toward(x: float, w_a: float, w_b: float, lag: tuple[float, float]) -> float
 def _jumps(e: float, free: float, held: float) -> float:
     """Where an element that sticks again at once stands: whole jumps away from `e`, the last one short of `free`.
 
-    A jump is the distance between the curves with and without the breakaway. Counting them, instead of landing on
-    `free`, makes the outcome of a fast change of pressure independent of the fine step.
+    A jump: the distance that the breakaway makes between curves. Counting makes the fine step indifferent.
     """
     jump = free - held
     where: float = free if jump == 0.0 else e + np.floor((free - e) / jump + 1e-9) * jump
@@ -94,11 +103,9 @@ def _unheld(free: float, held: float, inside: bool, ends: tuple[float, float]) -
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _element(e: float, free: Pair, held: Pair, extra: Pair, modes: tuple[bool, bool], ends: Pair) -> tuple[float, bool]:
-    """Where an element goes between its curves (closing, opening), `free` and as the breakaway holds it, if no stop
-    holds it, and whether it slipped.
+    """Where an element goes between its curves (closing, opening), `free` and as the breakaway holds it; if it slipped.
 
-    `extra`: what it takes to start (closing, opening). `modes`: whether it jumps, and whether only what lies inside
-    the stops pulls. `ends`: the stops.
+    `extra`: what it takes to start, `modes`: whether it jumps, whether only what lies inside the stops `ends` pulls.
     """
     bottom, top = free
     if extra[0] > 0.0 or extra[1] > 0.0:
@@ -142,38 +149,6 @@ def _moved(x: float, pulls: Pair, over: Pair, end: float, lag: Pair, drag: Pair)
         return _toward(x, pulls[0], pulls[1], lag)
     free, held = _toward(x, pulls[0] + over[0], pulls[1] + over[1], drag), _toward(x, end, end, lag)
     return free if abs(free - x) < abs(held - x) else held
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def coupled_start(
-    force: float,
-    wide: float,
-    c: FloatArray,
-    stops: FloatArray,
-    tables: Tables,
-    plays: Plays,
-    bends: Bends,
-    start: tuple[float, float],
-) -> tuple[FloatArray, FloatArray]:
-    """State (see `coupled_steps`) and elements at rest; `start`: (x, w), `stops`: of the play, of the stem."""
-    grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
-    elements = np.full(plays[0].size, start[1])
-    x = max(stops[2], min(stops[3], start[0]))
-    wide = min(wide, -c[V_OUTER]) if c[V_ON_STEM] > 0.0 else wide
-    more = less = wide + (c[V_STRIBECK] if c[V_STRIBECK] > 0.0 else 0.0)
-    softer = 1.0
-    if bends[0].size > 1:
-        place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
-        more, less = more + _curve_at(x, place, bends[0]), less - _curve_at(x, place, bends[1])
-        softer = _curve_at(x, place, bends[2])
-    w = over = 0.0
-    for j in range(elements.size):
-        bottom = softer * _curve_at(force - plays[0][j] - more, grid, tables[2])
-        top = softer * _curve_at(force + plays[0][j] + less, grid, tables[3])
-        reach = max(bottom, min(top, elements[j]))
-        elements[j] = max(ends[0], min(ends[1], reach))
-        w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
-    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, over, x]), elements
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -224,8 +199,7 @@ def coupled_steps(
             new_w, new_over, slipped = 0.0, 0.0, False
             for j in range(elements.size):
                 down, up = force[f] - spreads[j] - more, force[f] + spreads[j] + less
-                free = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
-                held = free
+                held = free = (softer * _curve_at(down, grid, closing), softer * _curve_at(up, grid, opening))
                 if breakaway > 0.0:
                     low, high = _curve_at(down - extra[0], grid, closing), _curve_at(up + extra[1], grid, opening)
                     held = (softer * low, softer * high)
@@ -236,7 +210,8 @@ def coupled_steps(
             new_after = _toward(after, w, new_w, lates)
             pulls = _left(after, x, short * fades + rubs), _left(new_after, x, short * fades + rubs)
             way = 0 if after + new_after > 2.0 * x else 1
-            new = _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drags[way])
+            drag = _throttled(h, c, way, 0.5 * (pulls[0] + pulls[1] + over + new_over) - x, drags[way])
+            new = _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drag)
             new = max(lowest, min(highest, max(x - rates[1] * h, min(x + rates[0] * h, new))))
             if kept > 0.0:
                 slipped = abs(new_after - x) > kept

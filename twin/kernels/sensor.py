@@ -36,17 +36,22 @@ from twin.slots import (
     S_LEAVES,
     S_OTHER,
     S_PLAY,
+    S_ROOT,
+    S_ROOT_SINCE_S,
     S_STEP,
     S_SWING,
+    S_TABLE,
     S_TRAVEL,
     S_WANDER_S,
     S_WINDOW_S,
     S_WINDOWS,
     S_ZERO,
+    TABLE,
 )
 
 #: The pieces of a natural cubic spline are linear in its knots: (4, pieces, knots), for knots 1 apart.
 _CARDINAL = CubicSpline(np.arange(KNOTS + 1.0), np.eye(KNOTS + 1), bc_type="natural").c
+_TABLE = slice(S_TABLE, S_TABLE + TABLE)
 
 
 def sensor_kernel(
@@ -88,6 +93,8 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
         y = y + c[S_DRIFT_RATE] * t
     if c[S_DRIFT_AMP] != 0.0:
         y = y - c[S_DRIFT_AMP] * np.expm1(-t / c[S_DRIFT_TAU_S])
+    if c[S_ROOT] != 0.0:
+        y = y + c[S_ROOT] * (np.sqrt(c[S_ROOT_SINCE_S] + t) - np.sqrt(c[S_ROOT_SINCE_S]))
     if c[S_JUMP] != 0.0:
         y = y + np.where(t >= c[S_JUMP_S], c[S_JUMP], 0.0)
     if c[S_CYCLE_S] > 0.0:
@@ -100,7 +107,7 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
 
 def curved(c: FloatArray) -> bool:
     """Whether the reading is anything but proportional to the position."""
-    return bool(c[S_BOW] != 0.0 or c[S_SWING] != 0.0 or c[S_LEAVES] != 0.0 or c[S_OTHER] != 0.0)
+    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER]].any() or c[_TABLE].any())
 
 
 def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
@@ -112,6 +119,8 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
         bend = bend + c[S_LEAVES] * np.square(np.maximum(way, 0.0) / reach)
     if c[S_OTHER] != 0.0:
         bend = bend + c[S_OTHER] * np.square(np.maximum(1.0 - c[S_FROM] - xi, 0.0) / (1.0 - c[S_FROM]))
+    if c[_TABLE].any():
+        bend = bend + np.interp(xi, np.linspace(0.0, 1.0, TABLE + 2), np.concatenate([[0.0], c[_TABLE], [0.0]]))
     return np.asarray(c[S_TRAVEL] * bend)
 
 

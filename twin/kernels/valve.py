@@ -11,7 +11,8 @@ from collections.abc import Callable
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.coupled import coupled_start, coupled_steps
+from twin.kernels.coupled import coupled_steps
+from twin.kernels.coupled_start import coupled_start
 from twin.kernels.dahl import dahl_target
 from twin.kernels.elastic import elastic_start, elastic_steps
 from twin.kernels.inertia import inertia_pass
@@ -47,6 +48,7 @@ from twin.slots import (
     V_RELAX,
     V_ROUNDED,
     V_SHORT,
+    V_SQUARED_S,
     V_STEP,
     V_STEP_TIME_S,
     V_STRETCHES,
@@ -60,9 +62,9 @@ from twin.slots import (
     stem_stops,
 )
 
-_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S, V_ON_STEM]
+_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S, V_ON_STEM, V_SQUARED_S, V_SQUARED_S + 1]
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_ON_STEM]
-_COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX]
+_COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX, V_SQUARED_S, V_SQUARED_S + 1]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4
 

@@ -1,0 +1,51 @@
+"""Where play and stem stand at rest, for the loop of `twin/kernels/coupled.py`."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from logs.recording import FloatArray
+from twin.kernels.inputs import Bends, Plays, Tables
+from twin.slots import FOREVER, V_ON_STEM, V_OUTER, V_STRIBECK, V_TRAVEL
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
+    """Linear interpolation at `p` in a table, extended by its end slopes; `grid`: first point, points per unit."""
+    q = (p - grid[0]) * grid[1]
+    i = min(max(int(q), 0), table.size - 2)
+    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
+    return value
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def coupled_start(
+    force: float,
+    wide: float,
+    c: FloatArray,
+    stops: FloatArray,
+    tables: Tables,
+    plays: Plays,
+    bends: Bends,
+    start: tuple[float, float],
+) -> tuple[FloatArray, FloatArray]:
+    """State (see `coupled_steps`) and elements at rest; `start`: (x, w), `stops`: of the play, of the stem."""
+    grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
+    elements = np.full(plays[0].size, start[1])
+    x = max(stops[2], min(stops[3], start[0]))
+    wide = min(wide, -c[V_OUTER]) if c[V_ON_STEM] > 0.0 else wide
+    more = less = wide + (c[V_STRIBECK] if c[V_STRIBECK] > 0.0 else 0.0)
+    softer = 1.0
+    if bends[0].size > 1:
+        place = (0.0, (bends[0].size - 1) / c[V_TRAVEL])
+        more, less = more + _curve_at(x, place, bends[0]), less - _curve_at(x, place, bends[1])
+        softer = _curve_at(x, place, bends[2])
+    w = over = 0.0
+    for j in range(elements.size):
+        bottom = softer * _curve_at(force - plays[0][j] - more, grid, tables[2])
+        top = softer * _curve_at(force + plays[0][j] + less, grid, tables[3])
+        reach = max(bottom, min(top, elements[j]))
+        elements[j] = max(ends[0], min(ends[1], reach))
+        w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
+    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, over, x]), elements
