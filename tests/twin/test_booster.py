@@ -202,6 +202,17 @@ def test_dirt_in_a_port_lets_less_through_it(dirt: float, up: float, down: float
     np.testing.assert_allclose(pressure(Plant(D, (port,)), None), plain[grid.offsets], atol=1e-12)
 
 
+@pytest.mark.parametrize("dirt", [4.0, -4.0])
+def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float) -> None:
+    """That a narrow supply port fills as ISO 6358 says, up to the supply, and that more or less air is swept."""
+    port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port_and_chamber"), (dirt, -0.4))
+    clean, by = plant(0.1, 0.15, 2.5), 1.0 + abs(dirt)
+    up, down, supply = (0.1, 0.15 * by, np.inf) if dirt > 0.0 else (0.1 * by, 0.15, 1.38 * 14.696)
+    found = pressure(clean.having((port,)), step_s=0.005)
+    assert np.max(np.abs(found - stepped(up, down, 1.5, supply))) < 0.02
+    np.testing.assert_allclose(pressure(Plant(D, (port, *clean.inserted)), step_s=0.005), found, atol=1e-12)
+
+
 @pytest.mark.thorough
 def test_a_dirty_port_of_a_known_booster_is_named() -> None:
     known = plant(0.1, 0.15, 2.0)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_CRACK, EP_PORT_DOWN, EP_PORT_UP, EP_QUICK, EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.slots import EP_CHAMBER, EP_CRACK, EP_PORT_DOWN, EP_PORT_UP, EP_QUICK, EP_TAU_FALL_S, EP_TAU_RISE_S
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -18,10 +18,34 @@ def _port(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_PORT_DOWN] *= 1.0 + max(values[0], 0.0)
 
 
+def _port_and_chamber(c: Coefficients, values: Sequence[float]) -> None:
+    _port(c, values)
+    c.ep[EP_CHAMBER] = 1.0 + values[1] if values[0] != 0.0 else 0.0
+
+
 def _quick(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[[EP_QUICK, EP_CRACK]] = values
 
 
+_DIRT = Parameter(
+    name="dirt",
+    kind="fraction",
+    lower=-60.0,
+    upper=60.0,
+    starts=(-12.0, -3.0, 3.0, 12.0),
+    scale=3.0,
+    doc="the exhaust lets 1 / (1 + dirt) of the flow through; negative: the supply",
+)
+_ROOM = Parameter(
+    name="room",
+    kind="fraction",
+    lower=-0.95,
+    upper=3.0,
+    starts=(-0.5, 0.2),
+    scale=0.5,
+    doc="by how much more the stem sweeps than a machine whose ports never limited it had shown",
+    size=False,
+)
 _QUICK = Parameter(
     name="quick",
     kind="fraction",
@@ -48,6 +72,7 @@ EFFECT = Effect(
     claim="Pressure rises and falls with different time constants.",
     equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
     "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead; "
+    "port_and_chamber: likewise, air of the booster times 1 + room, filling as from its supply (ISO 6358); "
     "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
@@ -83,6 +108,7 @@ EFFECT = Effect(
             _port,
             by_pressure=True,
         ),
+        Form("port_and_chamber", (_DIRT, _ROOM), _port_and_chamber, by_pressure=True),
         Form("quick_exhaust", (_QUICK, _CRACK), _quick),
     ),
     twins=("ep_rate_limit",),

@@ -13,8 +13,10 @@ from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.ringing import ringing_pass
 from twin.slots import (
+    EP_AIR,
     EP_BAND,
     EP_BAND_MODE,
+    EP_CHAMBER,
     EP_CLIP,
     EP_DEAD_S,
     EP_FULL_DOWN,
@@ -22,6 +24,7 @@ from twin.slots import (
     EP_GAIN,
     EP_KNEE,
     EP_MIXED_S,
+    EP_NOMINAL,
     EP_PORT_DOWN,
     EP_PORT_UP,
     EP_QUICK,
@@ -96,13 +99,16 @@ def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:
 
 
 def through_ports(c: FloatArray) -> FloatArray:
-    """The coefficients of a converter whose ports let less through: of its booster, if it has one."""
+    """The coefficients of a converter whose ports let less through: of its booster and chamber, if it has them."""
     ports = c[[EP_PORT_UP, EP_PORT_DOWN]]
     if (ports == 1.0).all():
         return c
     narrow = c.copy()
     if boosted(c):
         narrow[[EP_FULL_UP, EP_FULL_DOWN]] /= ports
+        if c[EP_CHAMBER] > 0.0:
+            narrow[EP_AIR] *= c[EP_CHAMBER]
+            narrow[EP_CLIP] = min(c[EP_CLIP], c[EP_NOMINAL] if ports[0] > 1.0 else FOREVER)
     else:
         narrow[[EP_TAU_RISE_S, EP_TAU_FALL_S]] *= ports
     return narrow
