@@ -135,9 +135,10 @@ def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]
     w = np.linspace(-0.5, 1.5, 2 * GRID - 1)
     close_shift = np.interp(w, c.xi, c.close_shift)
     open_shift = np.interp(w, c.xi, c.open_shift)
-    # A curve that would fall back is a snap: the stem jumps to the next position that needs the same pressure.
+    # A curve that folds is a snap: the stem jumps to the next position that needs the same pressure, which closing is
+    # at the greatest pressure on the way up and opening at the least one on the way down.
     close_p = np.maximum.accumulate(w * d.travel / k1 + d.a1 + close_shift)
-    open_p = np.maximum.accumulate(w * d.travel / k2 + d.a2 + open_shift)
+    open_p = np.minimum.accumulate((w * d.travel / k2 + d.a2 + open_shift)[::-1])[::-1]
     grid = np.linspace(min(close_p[0], open_p[0]), max(close_p[-1], open_p[-1]), _TABLE)
     return grid[0], grid[1] - grid[0], np.interp(grid, close_p, w * d.travel), np.interp(grid, open_p, w * d.travel)
 

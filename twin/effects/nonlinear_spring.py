@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.shapes import bow, swing
 
@@ -52,7 +53,7 @@ def _stem_slope(c: Coefficients, values: Sequence[float]) -> None:
     c.bend_at_stem(nothing, nothing, 1.0 + values[0] * (c.xi - 0.5))
 
 
-def _area(c: Coefficients, share: np.ndarray) -> None:
+def _area(c: Coefficients, share: FloatArray) -> None:
     """Where the diaphragm's area is larger by `share`, every pressure pulls more: spring and friction alike."""
     spring = c.xi * c.design.travel / c.design.compliance
     c.close_shift += (c.design.a1 + spring) * (1.0 / (1.0 + share) - 1.0)
@@ -75,6 +76,48 @@ def _stem_area(c: Coefficients, values: Sequence[float]) -> None:
     # k (p (1 + share) - a - x / k) is (1 + share) k (p - a / (1 + share)) - x
     larger = 1.0 + values[0] * (c.xi - 0.5)
     c.bend_at_stem(c.design.a1 * (1.0 / larger - 1.0), c.design.a2 * (1.0 / larger - 1.0), larger)
+
+
+#: Of an edge, as a fraction of travel: nothing is less wide, and nothing is divided by 0.
+_NO_WIDTH = 1e-9
+#: How much steeper than the spring a fall is at least that is called a fold.
+_LEAST_FOLD = 1.1
+
+
+def _edge(xi: FloatArray, centre: float, width: float) -> FloatArray:
+    """From 0 to 1 about `centre`; at the centre as steep as a straight piece as long as `width`."""
+    return 0.5 * (1.0 + np.tanh(2.0 * (xi - centre) / width))
+
+
+def _step(c: Coefficients, values: Sequence[float]) -> None:
+    shift = values[0] * _span(c) * values[2] * _edge(c.xi, values[1], values[2])
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+def _area_step(c: Coefficients, values: Sequence[float]) -> None:
+    _area(c, values[0] * (_edge(c.xi, values[1], values[2]) - 0.5))
+
+
+def _span(c: Coefficients) -> float:
+    return c.design.travel / c.design.compliance
+
+
+def _drop(c: Coefficients, values: Sequence[float]) -> FloatArray:
+    # Steeper than the spring, so that the force falls on the way and the stem snaps through.
+    width = values[0] / ((_LEAST_FOLD + values[2]) * _span(c))
+    return -values[0] * _edge(c.xi, values[1], max(width, _NO_WIDTH))
+
+
+def _snaps(c: Coefficients, values: Sequence[float]) -> None:
+    shift = _drop(c, values)
+    c.close_shift += shift
+    c.open_shift += shift
+
+
+def _stem_snaps(c: Coefficients, values: Sequence[float]) -> None:
+    shift = _drop(c, values)
+    c.bend_at_stem(shift, shift)
 
 
 _BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
@@ -101,13 +144,73 @@ _AREA = Parameter(
 )
 _AREA_MID = replace(_AREA, doc="excess of the effective area at mid travel, as a share")
 
+_CENTRE = Parameter(
+    name="centre",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=(0.25, 0.5, 0.75),
+    scale=0.2,
+    doc="where on the travel, 0 = open",
+    neutral=0.5,
+    size=False,
+)
+_WIDTH = Parameter(
+    name="width",
+    kind="fraction",
+    lower=0.02,
+    upper=0.4,
+    starts=(0.1,),
+    scale=0.1,
+    doc="length of the change, fraction of travel",
+    neutral=0.1,
+    size=False,
+)
+_STIFFER = Parameter(
+    name="stiffer",
+    kind="fraction",
+    lower=-0.95,
+    upper=8.0,
+    starts=(-0.5, 0.5, 2.0),
+    scale=0.5,
+    doc="excess of the spring's rate within the length of the change",
+)
+_DROP = Parameter(
+    name="drop",
+    kind="pressure",
+    lower=0.0,
+    upper=2.5,
+    starts=(0.25, 0.9),
+    scale=0.5,
+    doc="pressure by which the spring gives way",
+    smooth=False,
+    looks=6,
+)
+_STEEPER = Parameter(
+    name="steeper",
+    kind="fraction",
+    lower=0.0,
+    upper=11.0,
+    starts=(0.1, 0.6, 1.4, 4.0),
+    scale=2.0,
+    doc="by how much faster than 1.1 times the spring's rate it gives way at the centre",
+    size=False,
+    smooth=False,
+)
+#: A jump that is looked for at another place, or a little less long, than it is may be no help at all.
+_SNAPS_AT = replace(_CENTRE, lower=0.0, starts=tuple(k / 20 for k in range(2, 19)), neutral=0.0, smooth=False)
+_SNAPS = "the spring gives way at a place, and the stem snaps through"
+
 EFFECT = Effect(
     name="nonlinear_spring",
     stage="actuator",
     claim="Compliance depends on position.",
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
     "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
-    "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel",
+    "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel; "
+    "step: s = stiffer travel/k width E, E = (1 + tanh(2 (xi - centre) / width)) / 2; "
+    "area_step: p (1 + larger (E - 1/2)); "
+    "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -119,6 +222,10 @@ EFFECT = Effect(
         Form("area_bow", (_AREA_MID,), _area_bow),
         Form("area_slope_and_bow", (_AREA, replace(_AREA_MID, name="area_mid")), _area_slope_and_bow),
         Form("stem_area", (_AREA,), _stem_area),
+        Form("step", (_STIFFER, _CENTRE, _WIDTH), _step),
+        Form("area_step", (replace(_AREA, name="larger"), _CENTRE, _WIDTH), _area_step),
+        Form("snaps", (_DROP, _SNAPS_AT, _STEEPER), _snaps, outside=_SNAPS),
+        Form("stem_snaps", (_DROP, _SNAPS_AT, _STEEPER), _stem_snaps, outside=_SNAPS),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),
