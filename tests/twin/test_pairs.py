@@ -170,7 +170,7 @@ def test_one_that_bends_all_numbers_does_not_end_the_search() -> None:
         space = make_space(Plant(DESIGN), (cause("sensor_lag", "first_order"),), (), Scales())
         return Fit(space, np.zeros(1), mse, prior, np.sqrt(mse) * dice, np.eye(1), 1)
 
-    searcher = Searcher(channel, Plant(DESIGN), Scales())
+    searcher = Searcher(channel, Plant(DESIGN), Scales(), SearchRules(enough_share=0.001))
     none = one(3000.0, 0.0)
     assert searcher._nothing_left([one(3.0, 10.0), one(12.0, 2.0)], none)
     assert not searcher._nothing_left([one(3.0, 70_000.0), one(12.0, 2.0)], none)

@@ -45,7 +45,7 @@ class SearchRules:
     reform_share: float = 0.002  # where the likeliest pair leaves more than this share of what the design leaves,
     bent: float = 4.0  # or moves its design numbers by more than this (squares of their priors' deviations)
     enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
-    enough_share: float = 0.001  # likewise, as a share of what the design leaves
+    enough_share: float = 0.0003  # likewise, as a share of what the design leaves
     stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
@@ -90,6 +90,8 @@ class Searcher:
     def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
         """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer."""
         likely = self._likely(level)[0] if level else none
+        if any(c.form is not None for c in likely.space.causes) and bent_by(likely) > self.rules.bent:
+            return False
         return likely.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0))
 
     def _idle(self, pairs: Sequence[Fit], none: Fit, retuned: Fit) -> bool:
