@@ -5,6 +5,30 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.effect import Parameter
+
+CENTRE = Parameter(
+    name="centre",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.2, 0.5, 0.8),
+    scale=0.2,
+    doc="where on the travel, 0 = open",
+    neutral=0.5,
+    size=False,
+)
+WIDTH = Parameter(
+    name="width",
+    kind="fraction",
+    lower=0.02,
+    upper=0.3,
+    starts=(0.08,),
+    scale=0.05,
+    doc="standard deviation of the bell, fraction of travel",
+    neutral=0.1,
+    size=False,
+)
 
 
 def bow(xi: FloatArray) -> FloatArray:
@@ -20,6 +44,11 @@ def swing(xi: FloatArray) -> FloatArray:
 def bump(xi: FloatArray, centre: float, width: float) -> FloatArray:
     """A bell of height 1 at `centre`; `width` is its standard deviation as a fraction of travel."""
     return np.exp(-0.5 * np.square((xi - centre) / max(width, 1e-3)))
+
+
+def edge(xi: FloatArray, centre: float, width: float) -> FloatArray:
+    """From 0 to 1 about `centre`; there as steep as a straight piece as long as `width`, a fraction of travel."""
+    return 0.5 * (1.0 + np.tanh(2.0 * (xi - centre) / max(width, 1e-9)))
 
 
 def detrended(shape: FloatArray, xi: FloatArray) -> FloatArray:

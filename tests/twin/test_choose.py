@@ -78,7 +78,10 @@ def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> Non
 
 
 def test_what_leaves_more_than_the_noise_is_less_sure() -> None:
-    """The same cause on the same record, once with nothing left of it and once with a fifth of the noise besides."""
+    """The same cause on the same record, once with nothing left of it and once with a fifth of the noise besides.
+
+    A large cause: of a small one a friction that is free at thirteen places leaves as little.
+    """
     effect = effects()["spring_asymmetry"]
     plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], (0.2,)),))
     decision = judged(a_record(plant))[0].decisions[-1]

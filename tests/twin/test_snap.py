@@ -9,9 +9,14 @@ from scipy.optimize import brentq
 from control.design import DesignModel
 from logs.recording import FloatArray
 from tests.twin.judged import UP_TO_TWO, a_record
+from twin.case import make_case
 from twin.catalog import effect
 from twin.diagnose import diagnose
+from twin.fit.channel import position_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant, curve_tables, stem_response
+from twin.stages import driven_about
 from twin.timegrid import make_grid
 
 DESIGN = DesignModel()
@@ -78,6 +83,22 @@ def test_where_the_stem_is_decides_against_small_steps(closes: bool) -> None:
         x += dt_s * np.clip((pulled_to - x) / DESIGN.tau_s, -DESIGN.rate_limit, DESIGN.rate_limit)
     assert np.ptp(stem) > 0.9 * DESIGN.travel
     assert np.max(np.abs(stem - np.array(want))) < 0.01 * DESIGN.travel
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("form", ["snaps", "stem_snaps"])
+def test_folds_drawn_at_random_are_found(form: str) -> None:
+    """The response jumps with place and depth; a fit that went by slopes alone would stop beside it."""
+    spring, dice, left = effect("nonlinear_spring"), np.random.default_rng(3), []
+    for number in range(12):
+        fold = (dice.uniform(0.2, 1.2), dice.uniform(0.2, 0.8), dice.uniform(0.1, 3.9))
+        record = a_record(Plant(DESIGN, (Inserted(spring.name, spring.form(form), fold),)), seed=number)
+        case = make_case([record], DESIGN)
+        channel = position_channel(driven_about(case.base, case), case.sigma_y)
+        space = make_space(case.base, (Cause(spring.name, spring, spring.form(form)),), channel.numbers, case.scales)
+        rough = fit(channel, space, starts_of(space, [], record), rounds=6)
+        left.append(fit(channel, space, [rough.z]).mse)
+    assert sum(mse < 1.5 for mse in left) >= 10, np.round(left, 2)
 
 
 @pytest.mark.thorough

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import EP_CHAMBER, EP_CRACK, EP_PORT_DOWN, EP_PORT_UP, EP_QUICK, EP_TAU_FALL_S, EP_TAU_RISE_S
@@ -30,12 +31,14 @@ def _quick(c: Coefficients, values: Sequence[float]) -> None:
 _DIRT = Parameter(
     name="dirt",
     kind="fraction",
-    lower=-60.0,
-    upper=60.0,
-    starts=(-12.0, -3.0, 3.0, 12.0),
-    scale=3.0,
+    lower=-12.0,
+    upper=12.0,
+    starts=(-2.0, -0.3, 0.3, 2.0),
+    scale=1.0,
     doc="the exhaust lets 1 / (1 + dirt) of the flow through; negative: the supply",
 )
+#: Of a port that never limited anything there may be much before it shows.
+_MUCH_DIRT = replace(_DIRT, lower=-60.0, upper=60.0, starts=(-12.0, -3.0, 3.0, 12.0), scale=3.0)
 _ROOM = Parameter(
     name="room",
     kind="fraction",
@@ -94,21 +97,11 @@ EFFECT = Effect(
         ),
         Form(
             "port",
-            (
-                Parameter(
-                    name="dirt",
-                    kind="fraction",
-                    lower=-12.0,
-                    upper=12.0,
-                    starts=(-2.0, -0.3, 0.3, 2.0),
-                    scale=1.0,
-                    doc="the exhaust lets 1 / (1 + dirt) of the flow through; negative: the supply",
-                ),
-            ),
+            (_DIRT,),
             _port,
             by_pressure=True,
         ),
-        Form("port_and_chamber", (_DIRT, _ROOM), _port_and_chamber, by_pressure=True),
+        Form("port_and_chamber", (_MUCH_DIRT, _ROOM), _port_and_chamber, by_pressure=True),
         Form("quick_exhaust", (_QUICK, _CRACK), _quick),
     ),
     twins=("ep_rate_limit",),

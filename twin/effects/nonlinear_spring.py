@@ -9,7 +9,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.shapes import bow, swing
+from twin.shapes import CENTRE, WIDTH, bow, edge, swing
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -24,17 +24,18 @@ def _parameter(name: str, doc: str) -> Parameter:
     )
 
 
-def _bow(c: Coefficients, values: Sequence[float]) -> None:
-    shift = values[0] * bow(c.xi)
+def _shift(c: Coefficients, shift: FloatArray) -> None:
     c.close_shift += shift
     c.open_shift += shift
+
+
+def _bow(c: Coefficients, values: Sequence[float]) -> None:
+    _shift(c, values[0] * bow(c.xi))
 
 
 def _bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
     _bow(c, values)
-    shift = values[1] * swing(c.xi)
-    c.close_shift += shift
-    c.open_shift += shift
+    _shift(c, values[1] * swing(c.xi))
 
 
 def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
@@ -78,25 +79,16 @@ def _stem_area(c: Coefficients, values: Sequence[float]) -> None:
     c.bend_at_stem(c.design.a1 * (1.0 / larger - 1.0), c.design.a2 * (1.0 / larger - 1.0), larger)
 
 
-#: Of an edge, as a fraction of travel: nothing is less wide, and nothing is divided by 0.
-_NO_WIDTH = 1e-9
 #: How much steeper than the spring a fall is at least that is called a fold.
 _LEAST_FOLD = 1.1
 
 
-def _edge(xi: FloatArray, centre: float, width: float) -> FloatArray:
-    """From 0 to 1 about `centre`; at the centre as steep as a straight piece as long as `width`."""
-    return 0.5 * (1.0 + np.tanh(2.0 * (xi - centre) / width))
-
-
 def _step(c: Coefficients, values: Sequence[float]) -> None:
-    shift = values[0] * _span(c) * values[2] * _edge(c.xi, values[1], values[2])
-    c.close_shift += shift
-    c.open_shift += shift
+    _shift(c, values[0] * _span(c) * values[2] * edge(c.xi, values[1], values[2]))
 
 
 def _area_step(c: Coefficients, values: Sequence[float]) -> None:
-    _area(c, values[0] * (_edge(c.xi, values[1], values[2]) - 0.5))
+    _area(c, values[0] * (edge(c.xi, values[1], values[2]) - 0.5))
 
 
 def _span(c: Coefficients) -> float:
@@ -106,13 +98,11 @@ def _span(c: Coefficients) -> float:
 def _drop(c: Coefficients, values: Sequence[float]) -> FloatArray:
     # Steeper than the spring, so that the force falls on the way and the stem snaps through.
     width = values[0] / ((_LEAST_FOLD + values[2]) * _span(c))
-    return -values[0] * _edge(c.xi, values[1], max(width, _NO_WIDTH))
+    return -values[0] * edge(c.xi, values[1], width)
 
 
 def _snaps(c: Coefficients, values: Sequence[float]) -> None:
-    shift = _drop(c, values)
-    c.close_shift += shift
-    c.open_shift += shift
+    _shift(c, _drop(c, values))
 
 
 def _stem_snaps(c: Coefficients, values: Sequence[float]) -> None:
@@ -144,28 +134,8 @@ _AREA = Parameter(
 )
 _AREA_MID = replace(_AREA, doc="excess of the effective area at mid travel, as a share")
 
-_CENTRE = Parameter(
-    name="centre",
-    kind="fraction",
-    lower=0.02,
-    upper=0.98,
-    starts=(0.25, 0.5, 0.75),
-    scale=0.2,
-    doc="where on the travel, 0 = open",
-    neutral=0.5,
-    size=False,
-)
-_WIDTH = Parameter(
-    name="width",
-    kind="fraction",
-    lower=0.02,
-    upper=0.4,
-    starts=(0.1,),
-    scale=0.1,
-    doc="length of the change, fraction of travel",
-    neutral=0.1,
-    size=False,
-)
+_CENTRE = replace(CENTRE, lower=0.02, upper=0.98, starts=(0.25, 0.5, 0.75))
+_WIDTH = replace(WIDTH, upper=0.4, starts=(0.1,), scale=0.1, doc="length of the change, fraction of travel")
 _STIFFER = Parameter(
     name="stiffer",
     kind="fraction",

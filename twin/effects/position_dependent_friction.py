@@ -9,7 +9,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.shapes import bow, bump, detrended
+from twin.shapes import CENTRE, WIDTH, bow, bump, detrended
 
 #: Length of the raised end, as a fraction of travel.
 END = 0.12
@@ -49,29 +49,6 @@ _OPEN, _CLOSED = (_height(f"extra half deadband at fully {end}") for end in ("op
 
 #: Points of the travel at which the profile is free: four pieces for each of three waves along the stroke.
 KNOTS = tuple(k / 12 for k in range(13))
-
-_CENTRE = Parameter(
-    name="centre",
-    kind="fraction",
-    lower=0.0,
-    upper=1.0,
-    starts=(0.2, 0.5, 0.8),
-    scale=0.2,
-    doc="where on the travel, 0 = open",
-    neutral=0.5,
-    size=False,
-)
-_WIDTH = Parameter(
-    name="width",
-    kind="fraction",
-    lower=0.02,
-    upper=0.3,
-    starts=(0.08,),
-    scale=0.05,
-    doc="standard deviation of the bell, fraction of travel",
-    neutral=0.1,
-    size=False,
-)
 
 
 def _widen(c: Coefficients, shape: FloatArray) -> None:
@@ -143,10 +120,10 @@ EFFECT = Effect(
     "two curves",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
-        Form("spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _spot),
-        Form("stem_spot", (_height("extra half deadband at the centre"), _CENTRE, _WIDTH), _stem_spot),
-        Form("closing_spot", (_BURR, _CENTRE, _WIDTH), _closing_spot),
-        Form("opening_spot", (_BURR, _CENTRE, _WIDTH), _opening_spot),
+        Form("spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _spot),
+        Form("stem_spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _stem_spot),
+        Form("closing_spot", (_BURR, CENTRE, WIDTH), _closing_spot),
+        Form("opening_spot", (_BURR, CENTRE, WIDTH), _opening_spot),
         Form("bow", (_MID,), _bow),
         Form("open_end", (_OPEN,), _open_end),
         Form("closed_end", (_CLOSED,), _closed_end),
