@@ -36,6 +36,28 @@ def test_links_and_pictures_lead_somewhere(page) -> None:
     assert [target for target in local if not (page.parent / target).exists()] == []
 
 
+def anchors_of(page: Path) -> set[str]:
+    """What a `#...` may name: the headings outside of code, as forges spell them."""
+    text = re.sub(r"^```.*?^```", "", text_of(page), flags=re.DOTALL | re.MULTILINE)
+    headings = re.findall(r"^#{1,6} (.+)$", text, re.MULTILINE)
+    words = [re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", heading).strip().lower() for heading in headings]
+    return {re.sub(r"[^\w\- ]", "", heading).replace(" ", "-") for heading in words}
+
+
+@pytest.mark.parametrize("page", PAGES, ids=IDS)
+def test_links_to_sections_name_a_heading(page) -> None:
+    links = re.findall(r"\]\(([^)\s#:]*(?:\.md)?)#([^)\s]+)\)", text_of(page))
+    named = [(page.parent / file if file else page, anchor) for file, anchor in links]
+    lost = [f"{p.name}#{anchor}" for p, anchor in named if p.suffix == ".md" and anchor not in anchors_of(p)]
+    assert lost == []
+
+
+def test_a_heading_is_spelled_as_in_a_link(tmp_path) -> None:
+    page = tmp_path / "a.md"
+    page.write_text("## A stranger's plant, `x_y` & [more](b.md)\n\n```\n# no heading\n```\n", encoding="utf-8")
+    assert anchors_of(page) == {"a-strangers-plant-x_y--more"}
+
+
 @pytest.mark.parametrize("page", PAGES, ids=IDS)
 def test_verbs_and_options_that_it_names_exist(page) -> None:
     wrong = []
@@ -60,7 +82,15 @@ def test_pictures_are_small() -> None:
 def test_the_index_lists_every_page() -> None:
     index = text_of(HOUSE / "docs" / "index.md")
     pages = [page.relative_to(HOUSE / "docs").as_posix() for page in HOUSE.glob("docs/**/*.md")]
-    assert [page for page in pages if page != "index.md" and f"({page})" not in index] == []
+    others = [page for page in pages if page != "index.md" and not page.startswith("blind/")]
+    assert [page for page in others if f"({page})" not in index] == []
+
+
+def test_the_blind_page_lists_every_published_check() -> None:
+    listed = text_of(HOUSE / "docs" / "blind.md")
+    pages = [page.relative_to(HOUSE / "docs").as_posix() for page in HOUSE.glob("docs/blind/*.md")]
+    assert pages
+    assert [page for page in pages if f"({page})" not in listed] == []
 
 
 def test_the_profile_in_the_readme_is_a_working_bench(tmp_path) -> None:
