@@ -86,7 +86,7 @@ def test_every_check_has_all_figures_of_the_summary() -> None:
 def test_families_add_up_to_all() -> None:
     for check in CHECKS:
         families = [figures for name, figures in check.figures.items() if name != "all"]
-        for row in (m.row for m in MEASURES):
+        for row in (m.row for m in MEASURES if families):  # a check of one family has no columns besides
             assert sum(f[row].hits for f in families if row in f) == check.figures["all"][row].hits, (check.seed, row)
             assert sum(f[row].of for f in families if row in f) == check.figures["all"][row].of, (check.seed, row)
 
