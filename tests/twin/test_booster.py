@@ -38,6 +38,8 @@ COMMAND = np.select(
 )
 #: A stem that closes and opens again while the command stands still, too.
 STEM = np.interp(TIME_S, [0, 6, 12, 22, 40, 45, 80], [0.0, 0.0, 0.5, 0.1, 0.1, 0.4, 0.0])
+#: A pilot with an overlap [psi], alone and with two fifths less air behind it than was known.
+SHUT = {"overlap_and_chamber": (0.1, -0.4), "overlap": (0.1,)}
 WIDE = 0.034 * D.travel / D.compliance
 
 
@@ -211,6 +213,27 @@ def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float) -> None:
     found = pressure(clean.having((port,)), step_s=0.005)
     assert np.max(np.abs(found - stepped(up, down, 1.5, supply))) < 0.02
     np.testing.assert_allclose(pressure(Plant(D, (port, *clean.inserted)), step_s=0.005), found, atol=1e-12)
+
+
+def test_a_shut_pilot_shows_the_chamber() -> None:
+    """Between its edges only the stem moves the pressure, by what it sweeps; without a booster it sweeps nothing."""
+    shut, edges = ((effect("ep_deadband").form(name), values) for name, values in SHUT.items())
+    other, same = Inserted("ep_deadband", *shut), Inserted("ep_deadband", *edges)
+    want = pressure(plant(0.1, 0.15, 1.5).having((same,)))
+    np.testing.assert_allclose(pressure(plant(0.1, 0.15, 2.5).having((other,))), want, atol=1e-12)
+    assert np.abs(pressure(plant(0.1, 0.15, 2.5).having((same,))) - want).max() > 0.05
+    np.testing.assert_allclose(pressure(Plant(D, (other,))), pressure(Plant(D, (same,))), atol=1e-12)
+
+
+@pytest.mark.thorough
+def test_a_shut_pilot_is_named_alone_where_the_booster_is_not_known_well() -> None:
+    """One that always opened hardly shows how much air the stem takes: the design has three times as much."""
+    band = Inserted("ep_deadband", effect("ep_deadband").form("overlap"), (0.15,))
+    record = a_record(plant(0.012, 0.016, 1.2).having((band,)), seed=5)
+    known = plant(0.007, 0.011, 3.7)
+    found = diagnose([record], D, known.inserted, Settings(search=SearchRules(most=2))).diagnosis
+    assert [c.name for c in found.causes] == ["ep_deadband"]
+    assert found.causes[0].parameters["band"].value == pytest.approx(0.15, rel=0.05)
 
 
 @pytest.mark.thorough
