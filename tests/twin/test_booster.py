@@ -14,10 +14,11 @@ from logs.units import atmosphere
 from tests.twin.judged import a_record
 from twin.catalog import effect
 from twin.chain import chain_response
+from twin.choose import search
 from twin.choose.candidates import effect_causes
 from twin.choose.search import SearchRules
 from twin.diagnose import Settings, diagnose
-from twin.effect import Coefficients
+from twin.effect import Coefficients, Scales
 from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_channel
 from twin.fit.trial import make_trial
 from twin.kernels.booster import outflow
@@ -213,6 +214,20 @@ def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float) -> None:
     found = pressure(clean.having((port,)), step_s=0.005)
     assert np.max(np.abs(found - stepped(up, down, 1.5, supply))) < 0.02
     np.testing.assert_allclose(pressure(Plant(D, (port, *clean.inserted)), step_s=0.005), found, atol=1e-12)
+
+
+def test_a_port_with_little_dirt_is_found_with_the_chamber_too(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its starts are far off, for ports that never limited anything; the search begins again where `port` ended."""
+    known = plant(0.0067, 0.0109, 3.7)
+    port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port"), (0.8,))
+    record = a_record(known.having((port,)), seed=5)
+    channel = pressure_channel([make_trial(record, 0.05)], 0.008)
+    causes = [c for c in effect_causes(channel) if c.form is not None and c.form.name.startswith("port")]
+    monkeypatch.setattr(search, "effect_causes", lambda _channel, _base: causes)
+    searcher = search.Searcher(channel, known, Scales(), SearchRules(most=1))
+    searcher.run()
+    plain, chamber = (next(f for f in searcher.tried if f.space.causes == (c,)) for c in causes)
+    assert max(plain.mse, chamber.mse) < 1.3
 
 
 def test_a_shut_pilot_shows_the_chamber() -> None:

@@ -15,6 +15,7 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
+from twin.choose.nested import nested
 from twin.choose.pairs import promising_pairs
 from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
 from twin.choose.score import yardstick_for
@@ -104,6 +105,8 @@ class Searcher:
         causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            fits = nested(self.channel, fits, self.rules.rounds, pool)
         self.tried[:] = [f for f in fits if len(f.names) == 1]
         return self._polished(best_forms(fits, self.channel.use))
 
