@@ -9,12 +9,10 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.signal import lfilter
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
-from twin.choose import search
 from twin.choose.claims import together
 from twin.choose.decide import DecisionRules, decide
 from twin.choose.pairs import _best_of_each, _gains, promising_pairs
@@ -26,8 +24,6 @@ from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
-
-BOW = effect("lvdt_nonlinearity").form("bow")
 
 
 def cause(name: str, form: str) -> Cause:
@@ -77,21 +73,6 @@ def test_pairs_are_tried_in_the_forms_that_did_not_do_best_alone() -> None:
         {f.name for f in effect("reduced_travel").forms[1:]},
     ]
     assert in_other_forms([both, number], tried, 0) == []
-
-
-def test_of_two_forms_the_likelier_one_speaks_for_the_causes(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A table follows what wanders beside a bow, and leaves less; counted by what is independent it is not worth it."""
-    trial, _ = trial_of(Plant(DESIGN, (Inserted("lvdt_nonlinearity", BOW, (0.012,)),)), staircase())
-    slow = lfilter([1.0], [1.0, -0.98], np.random.default_rng(7).normal(0.0, 0.2 * SIGMA, trial.recording.n))
-    recording = replace(trial.recording, position=trial.recording.position + slow)
-    channel = position_channel([replace(trial, recording=recording)], SIGMA)
-    forms = [cause("lvdt_nonlinearity", "table"), cause("lvdt_nonlinearity", "bow")]
-    monkeypatch.setattr(search, "effect_causes", lambda _channel, _base: forms)
-    searcher = Searcher(channel, Plant(DESIGN), Scales(), SearchRules(most=1))
-    findings = searcher.run()
-    table, bow = (next(f for f in searcher.tried if f.space.causes == (c,)) for c in forms)
-    assert table.mse < bow.mse - 0.01
-    assert [f.space.causes for f in findings.fits if f.names == ("lvdt_nonlinearity",)] == [bow.space.causes]
 
 
 @pytest.mark.thorough
