@@ -46,7 +46,7 @@ EP_LEAK = 28  # flow per error inside an overlap band, as a share of that outsid
 EP_QUICK = 29  # further flow of a quick exhaust per error beyond EP_CRACK, as a multiple of that of the port [-]
 EP_CRACK = 30  # error from which a falling pressure has it [pressure]
 EP_MIXED_S = 31  # lag of what comes out of a dead time [s]
-EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port shows it and its supply [-]; 0: nobody asks
+EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port or a shut pilot shows it [-]; 0: nobody asks
 EP_COUNT = 33
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------

@@ -38,6 +38,24 @@ def test_a_third_cause_has_to_explain_part_of_the_gap(count: int, mse: tuple[flo
 
 
 @pytest.mark.parametrize(
+    ("mse", "first", "wanted"),
+    [
+        ((1.41, 0.97), False, True),  # four tenths more than the healthy machine leaves, and it takes them all
+        ((1.25, 0.80), False, False),  # no more than some healthy machine leaves: its own misfit may be explained
+        ((1.41, 1.16), False, False),  # the rest of a form that is not quite true
+        ((1.41, 0.97), True, False),  # alone a cause has to explain more than the healthy machine's misfit
+    ],
+)
+def test_a_second_cause_is_worth_what_the_first_leaves_beyond_a_healthy_machine(
+    mse: tuple[float, float], first: bool, wanted: bool
+) -> None:
+    small, large = fitted(0 if first else 1, mse[0]), fitted(1 if first else 2, mse[1])
+    none = small if first else fitted(0, 97.6)
+    findings: Any = SimpleNamespace(none=none, score=lambda one: -100.0 * one.mse)
+    assert _worth(findings, small, large, DecisionRules(gain=0.61, within=1.0), 1.0) is wanted
+
+
+@pytest.mark.parametrize(
     ("bent", "left", "wanted"),
     [(0.0, 0.0, False), (800.0, 0.0, True), (800.0, 20.0, True), (800.0, 400.0, False)],
 )

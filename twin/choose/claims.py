@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.choose.score import Yardstick
+from twin.choose.score import yardstick_for
 from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED, Cause
@@ -63,15 +63,16 @@ def _is_nothing(fit: Fit, covariance: FloatArray, which: list[int]) -> bool:
     return float(sizes @ np.linalg.pinv(covariance[np.ix_(which, which)]) @ sizes) < len(which)
 
 
-def best_forms(fits: Sequence[Fit], rows: int) -> list[Fit]:
-    """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause."""
-    plain = Yardstick(rows)
-    best: dict[tuple[str, ...], Fit] = {}
-    for one in fits:
-        key = tuple(sorted(one.names))
-        if key not in best or plain.score(one) > plain.score(best[key]):
-            best[key] = one
-    return list(best.values())
+def best_forms(fits: Sequence[Fit], use: np.ndarray) -> list[Fit]:
+    """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause.
+
+    By the yardstick by which causes are compared, too. One that took every residual sample for an independent one would
+    choose the form with most numbers, which then loses by them to a wrong cause. `use`: the rows that count.
+    """
+    if not fits:
+        return []
+    ranked = sorted(fits, key=yardstick_for(fits, use).score)
+    return list({tuple(sorted(one.names)): one for one in ranked}.values())  # the last of the same causes stays
 
 
 def suspected(fit: Fit) -> list[tuple[Cause, ...]]:

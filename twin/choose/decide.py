@@ -25,6 +25,8 @@ _BENT, _STRAIGHTER = 50.0, 0.2
 _FREE = 5
 #: Mean squared residual over the floor up to which a signal is explained to its noise.
 _EXACT = 1.1
+#: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
+_SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
 _ABOVE_BEST = 1.5
 
@@ -33,10 +35,12 @@ _ABOVE_BEST = 1.5
 class DecisionRules:
     """Thresholds, chosen on the calibration bank and never on published blind trials (docs/calibration.md).
 
-    Gains are in units of the noise variance: 1 means as large as the noise itself.
+    Gains are in units of the noise variance: 1 means as large as the noise itself. `gain` is raised to what a healthy
+    machine leaves, where that is known; `further` is what a cause beside others has to gain where they leave more.
     """
 
     gain: float = 0.15
+    further: float = 0.15
     evidence: float = 12.0
     share: float = 0.02
     thorough: float = 0.55
@@ -228,8 +232,11 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     tidy = gain > rules.complete * left and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
     spares = bent_by(small) > _BENT and bent_by(large) < _STRAIGHTER * bent_by(small)
-    material = gain > max(rules.gain, floor - 1.0) and (gain > rules.share * before or tidy or spares)
     first = small is findings.none
+    # what others leave beyond what any healthy machine does is no healthy machine's
+    beyond = not first and small.mse > _SCATTER * rules.within
+    least = min(rules.gain, rules.further) if beyond else rules.gain
+    material = gain > max(least, floor - 1.0) and (gain > rules.share * before or tidy or spares)
     thorough = first or gain > rules.thorough * left or gain > rules.large_share * before
     # jumps that no model follows leave much, in which a bystander finds something
     if any(c.effect is not None and c.effect.erratic for c in small.space.causes) and large.mse > rules.quiet * floor:

@@ -10,6 +10,7 @@ Geyer, Stat. Sci. 7 (1992) 473 (integrated autocorrelation); Laplace's approxima
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -55,6 +56,11 @@ def make_yardstick(best: FloatArray, use: np.ndarray) -> Yardstick:
     fir = whitening_filter(best[use])
     white = lfilter(fir, [1.0], best)
     return Yardstick(int(np.count_nonzero(use)), phi, inflation(white, use), fir)
+
+
+def yardstick_for(fits: Sequence[Fit], use: np.ndarray) -> Yardstick:
+    """The yardstick for some hypotheses, from the residuals of the one that leaves least."""
+    return make_yardstick(min(fits, key=lambda f: f.mse).residuals, use)
 
 
 def whitening_filter(residuals: FloatArray, order: int = _ORDER) -> FloatArray:

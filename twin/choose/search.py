@@ -15,9 +15,10 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
+from twin.choose.nested import nested
 from twin.choose.pairs import promising_pairs
 from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
-from twin.choose.score import make_yardstick
+from twin.choose.score import yardstick_for
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
 from twin.effect import Scales
@@ -83,9 +84,7 @@ class Searcher:
             level = self._extended(level, size)
             found += level
         found = _better_of_each([*found, *self._neighbours(found)])
-        everything = [none, *found]
-        best = min(everything, key=lambda f: f.mse)
-        return Findings(self.channel, none, retuned, tuple(found), make_yardstick(best.residuals, self.channel.use))
+        return Findings(self.channel, none, retuned, tuple(found), yardstick_for([none, *found], self.channel.use))
 
     def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
         """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer."""
@@ -106,9 +105,10 @@ class Searcher:
         causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
+        with ThreadPoolExecutor(self.rules.threads) as pool:
+            fits = nested(self.channel, fits, self.rules.rounds, pool)
         self.tried[:] = [f for f in fits if len(f.names) == 1]
-        fits = best_forms(fits, self.channel.rows)
-        return self._polished(fits)
+        return self._polished(best_forms(fits, self.channel.use))
 
     def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
         """Every hypothesis of the beam with one more cause, of those that promise something."""
@@ -125,8 +125,8 @@ class Searcher:
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
         if size == 2:
             fits += self._paired([c for c in singles if c.form is not None])
-            fits += self._reformed(best_forms(fits, self.channel.rows))
-        return self._polished(best_forms(fits, self.channel.rows))
+            fits += self._reformed(best_forms(fits, self.channel.use))
+        return self._polished(best_forms(fits, self.channel.use))
 
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
@@ -146,7 +146,7 @@ class Searcher:
         causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
         likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
-        return best_forms(self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts"), self.channel.rows)
+        return best_forms(self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts"), self.channel.use)
 
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
         """What stands beside the likeliest hypotheses and was not fitted on the way up.
@@ -174,9 +174,7 @@ class Searcher:
 
     def _likely(self, level: Sequence[Fit]) -> list[Fit]:
         """The hypotheses by their scores, best first: one that bends all numbers to imitate others is not likely."""
-        best = min(level, key=lambda f: f.mse)
-        yardstick = make_yardstick(best.residuals, self.channel.use)
-        return sorted(level, key=yardstick.score, reverse=True)
+        return sorted(level, key=yardstick_for(level, self.channel.use).score, reverse=True)
 
     def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Apply, Coefficients, Effect, Form, Parameter
-from twin.slots import EP_BAND, EP_BAND_MODE, EP_LEAK
+from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400
@@ -40,6 +40,11 @@ def _leaks(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_BAND_MODE] = 3.0 if values[0] > 0.0 else 0.0
 
 
+def _shut(c: Coefficients, values: Sequence[float]) -> None:
+    _mode(3.0)(c, values)
+    c.ep[EP_CHAMBER] = 1.0 + values[1] if values[0] > 0.0 else 0.0
+
+
 _LEAK = Parameter(
     name="leak",
     kind="fraction",
@@ -51,12 +56,25 @@ _LEAK = Parameter(
     size=False,
 )
 
+#: Behind a shut booster it is the stem alone that moves the pressure. One that always opened never showed by how much.
+_ROOM = Parameter(
+    name="room",
+    kind="fraction",
+    lower=-0.95,
+    upper=3.0,
+    starts=(-0.5, 0.2),
+    scale=0.5,
+    doc="by how much more the stem sweeps than a machine whose pilot never shut had shown",
+    size=False,
+)
+
 EFFECT = Effect(
     name="ep_deadband",
     stage="ep",
     claim="The converter ignores command changes inside a band.",
     equations="hold: the goal v follows u when |u - v| > band; play: v = max(u - band, min(u + band, v)); "
     "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full); "
+    "overlap_and_chamber: likewise, air of the booster times 1 + room; "
     "overlap_leaking: tau dp/dt = e - max(-band, min(e, band)) + leak e, e = u - p",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (overlapped valves); IEC 61298-2 (dead band)",
     forms=(
@@ -67,6 +85,12 @@ EFFECT = Effect(
             "overlap_leaking",
             (*_band("pressure error at which the pilot begins to open beyond its leak", True), _LEAK),
             _leaks,
+        ),
+        Form(
+            "overlap_and_chamber",
+            (*_band("pressure error at which the pilot of a booster begins to open", True), _ROOM),
+            _shut,
+            by_pressure=True,
         ),
         Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
     ),

@@ -99,9 +99,9 @@ def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:
 
 
 def through_ports(c: FloatArray) -> FloatArray:
-    """The coefficients of a converter whose ports let less through: of its booster and chamber, if it has them."""
+    """The coefficients of a converter whose ports let less through, or are shut: of its booster and chamber, if any."""
     ports = c[[EP_PORT_UP, EP_PORT_DOWN]]
-    if (ports == 1.0).all():
+    if (ports == 1.0).all() and c[EP_CHAMBER] == 0.0:
         return c
     narrow = c.copy()
     if boosted(c):
