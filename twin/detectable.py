@@ -15,6 +15,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.case import Case
 from twin.catalog import effects as catalogued
+from twin.choose.candidates import effect_causes
 from twin.choose.decide import DecisionRules
 from twin.diagnosis import EffectTest
 from twin.effect import Effect, Form, Parameter, Scales
@@ -29,8 +30,10 @@ _STEPS = 5
 _NEAR = (0.8, 1.3)
 #: Share of a record's time that is the whole of it.
 _WHOLE = 0.9
-#: The first and the largest relative error of a design number that is asked about.
-_FIRST_WRONG, _WRONG = 0.01, 0.5
+#: The first and the largest relative error of a design number that is asked about, and the largest downwards.
+_FIRST_WRONG, _WRONG, _TOO_SMALL = 0.01, 0.5, 0.8
+#: A size that is none, as a share of the range, and what it may show: a form may do something without any.
+_NOTHING, _NOTHING_SHOWS = 1e-7, 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +63,11 @@ def detection_limits(
         basis = _nuisance(channel, base, scales)
         needed = max(2.0 * rules.evidence, rules.gain * channel.rows)
         detector = Detector(channel, base, scales, np.linalg.qr(basis)[0], channel.residuals(base), needed)
+        stand_trial = effect_causes(channel, base)
         for effect in effects:
             if effect.stage in channel.stages and effect.evidence == "trajectory":
-                lines.append(_best_form(detector, effect))
+                tried = [c.form for c in stand_trial if c.name == effect.name and c.form is not None]
+                lines.append(_best_form(detector, effect, tried))
         for k, name in enumerate(channel.numbers):
             others = np.linalg.qr(np.delete(basis, k, axis=1))[0]
             numbers.append(_of_number(detector, name, others))
@@ -90,12 +95,12 @@ def _nuisance(channel: Channel, base: Plant, scales: Scales) -> FloatArray:
     return np.asarray(jacobian(residuals, z, residuals(z), space.steps, space.upper))
 
 
-def _best_form(detector: Detector, effect: Effect) -> EffectTest:
-    """The form of an effect that shows first, as a share of its plausible range; of those that are candidates."""
+def _best_form(detector: Detector, effect: Effect, tried: Sequence[Form]) -> EffectTest:
+    """The form of an effect that shows first, as a share of its plausible range; of those that stand trial here."""
     found = [
         (limit, form, main)
-        for form in effect.forms
-        if not (form.outside or form.described) and (main := _main(form)) is not None
+        for form in tried
+        if not form.outside and (main := _main(form)) is not None
         for limit in [_form_limit(detector, effect, form, main)]
     ]
     limit, form, main = min(found, key=lambda one: one[0] / _reach(one[2]), default=(np.inf, None, None))
@@ -118,6 +123,8 @@ def _form_limit(detector: Detector, effect: Effect, form: Form, main: Parameter)
         values = _sized(form, main, main.neutral + _side(main) * size, present, detector.scales)
         return detector.shown(base.having([Inserted(effect.name, form, values)]), detector.nuisance)
 
+    if shown(_NOTHING * _reach(main)) > _NOTHING_SHOWS:
+        return float("inf")  # it is not the size that shows
     first = min(abs(s - main.neutral) for s in main.starts if s != main.neutral)
     return smallest_shown(shown, first, _reach(main))
 
@@ -132,9 +139,11 @@ def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
         return detector.shown(Plant(changed, detector.base.inserted), others)
 
     limit = smallest_shown(shown, _FIRST_WRONG, _WRONG)
-    if limit > _WRONG and nominal(design, name) > _WRONG * size:  # a bound that was never met shows when it is lower
-        limit = smallest_shown(lambda relative: shown(-relative), _FIRST_WRONG, _WRONG)
-    if limit > _WRONG:
+    most = _WRONG
+    if limit > most and nominal(design, name) > _TOO_SMALL * size:  # a bound that was never met shows when it is lower
+        most = _TOO_SMALL
+        limit = smallest_shown(lambda relative: shown(-relative), _FIRST_WRONG, most)
+    if limit > most:
         return EffectTest(f"parameter:{name}", False, "this record does not excite it", name)
     return EffectTest(f"parameter:{name}", True, "", name, limit * size, unit(design, name))
 

@@ -104,7 +104,8 @@ V_STRETCHED = 48  # what there is of that at the start [-]
 V_SQUARED_S = (
     49  # what drag adds to the lag of a stem that closes, and (50) opens, for each unit of speed [s2/position]
 )
-V_COUNT = 51
+V_KEPT = 51  # how far friction that is the same at any speed keeps the stem from its target [position]
+V_COUNT = 52
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

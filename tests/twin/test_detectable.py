@@ -92,6 +92,32 @@ def test_a_rate_limit_that_was_never_met_shows_when_it_is_lower() -> None:
     assert np.ptp(channel.residuals(Plant(higher)) - plain) < 1e-6
 
 
+def test_a_form_that_acts_without_any_size_promises_nothing(healthy: StageResult) -> None:
+    """Stops that are met at speed make a difference as soon as there is any friction, however little."""
+    case, channel = healthy.case, healthy.decisions[-1].findings.channel
+    tests = detection_limits([channel], case.base, case.scales, [effect("friction_in_motion")], DecisionRules())
+    [test] = [t for t in tests if t.name == "friction_in_motion"]
+    assert test.detection_limit is None or 1e-4 < test.detection_limit < 1.0
+
+
+def test_more_recordings_than_an_effect_has_numbers_for() -> None:
+    """A zero that each recording has apart is known for ten of them."""
+    short = [replace(a_record(Plant(DesignModel()), seed=k, n=200), pressure=None, name=f"run{k}") for k in range(12)]
+    case = make_case(short, DesignModel())
+    channel = chain_channel(case.trials, case.sigma_y)
+    tests = detection_limits([channel], case.base, case.scales, [effect("lvdt_drift")], DecisionRules())
+    assert "lvdt_drift" in {t.name for t in tests}
+
+
+def test_a_rate_limit_less_than_half_of_the_design_shows() -> None:
+    fast = replace(DesignModel(), rate_limit=0.45)  # nothing here is faster than 0.2 in/s
+    case = make_case([replace(a_record(Plant(fast)), pressure=None)], fast)
+    channel = chain_channel(case.trials, case.sigma_y)
+    tests = detection_limits([channel], case.base, case.scales, [], DecisionRules())
+    [test] = [t for t in tests if t.name == "parameter:rate_limit"]
+    assert test.detection_limit is not None and 0.5 < test.detection_limit / fast.rate_limit <= 0.8
+
+
 def test_what_is_slow_is_not_promised_from_windows(healthy: StageResult) -> None:
     channel, case = healthy.decisions[-1].findings.channel, healthy.case
     tests = (EffectTest("lvdt_drift", True, "", "rate", 1e-6, "in/s"), EffectTest("creep", True, "", "share", 0.01))

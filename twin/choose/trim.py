@@ -11,7 +11,8 @@ from dataclasses import replace
 
 from twin.catalog import effects
 from twin.choose.claims import size_of
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision, DecisionRules, idle
+from twin.choose.findings import Findings
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 
@@ -41,11 +42,18 @@ def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decis
         rest = decision.rest_of(smaller)
         if rest >= rules.unexplained and smaller.mse >= rules.nothing_left * decision.floor:
             break
-        best = decision.findings.best_of_size(size_of(smaller))
-        if best is not None and decision.findings.score(best) > decision.findings.score(smaller) + rules.evidence:
-            smaller = best  # beside the cause that went it was not needed
+        smaller = _instead(decision.findings, smaller, rules)
         decision = replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
     return decision
+
+
+def _instead(findings: Findings, smaller: Fit, rules: DecisionRules) -> Fit:
+    """The best hypothesis of that size where it is clearly likelier: beside the cause that went, `smaller` was needed
+    only. Not one whose effects do no more than re-tuning does: it stands for the number that went."""
+    best = findings.best_of_size(size_of(smaller))
+    if best is None or findings.score(best) <= findings.score(smaller) + rules.evidence:
+        return smaller
+    return smaller if idle(findings, best, rules) else best
 
 
 def dropped(decision: Decision, name: str) -> Decision | None:

@@ -11,6 +11,7 @@ from twin.slots import (
     V_HARD_LOW,
     V_HIGH,
     V_IN_MOTION,
+    V_KEPT,
     V_LOW,
     V_OUTER,
     V_OUTER_CENTRE,
@@ -93,6 +94,13 @@ def _partial(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_OUTER_SLOPE] = 1.0 / d.compliance
 
 
+def _short(c: Coefficients, values: Sequence[float]) -> None:
+    """The stops hold the play before the friction, so that the stem rests short of them, too."""
+    half = 0.5 * c.design.deadband * values[0]
+    c.widen(-half)
+    c.valve[V_KEPT] = half * c.design.compliance
+
+
 def _rounded(c: Coefficients, values: Sequence[float]) -> None:
     _partial(c, values)
     if values[0] > 0.0:
@@ -145,6 +153,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The stem stops when the pressure reverses instead of coasting to its play target.",
     equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a play of (1 - share) (a1 - a2) comes before; "
+    "short_of_target: that play is held inside the stops, what pulls the stem is |w - x| less k share (a1 - a2) / 2; "
     "rounded: tau v + share k (a1 - a2) / 2 tanh(v / speed) = k (p - (a1 + a2) / 2) - x behind that play; elastic: "
     "friction turns over a distance, w is held only beyond the stops, x at the stops; "
     "partial_loaded: as partial, with friction in proportion to 1 + load (w / travel - 1/2) and such stops",
@@ -153,6 +162,7 @@ EFFECT = Effect(
     forms=(
         Form("full", (), _full),
         Form("partial", (_SHARE,), _partial),
+        Form("short_of_target", (_SHARE,), _short),
         Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic, described=True),
         Form("rounded", (_SHARE, _SPEED), _rounded),
         Form("full_hit", (), _full_hit),

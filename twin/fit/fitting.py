@@ -14,7 +14,13 @@ from twin.fit.space import Space, cause_starts
 from twin.plant import Plant
 
 #: How far off, in z, wrong numbers are also looked for: from their nominals the way may lead through a worse fit.
-_FAR = {"deadband": 0.6, "offset": 0.25, "rate_limit": 0.45, "tau": 0.4, "ep_tau": 0.5}
+_FAR = {
+    "deadband": (-0.6, 0.6),
+    "offset": (-0.25, 0.25),
+    "rate_limit": (-0.65, -0.45, 0.45),  # of one that was never met, only what lies below the fastest motion shows
+    "tau": (-0.4, 0.4),
+    "ep_tau": (-0.5, 0.5),
+}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -139,7 +145,7 @@ def _number_starts(space: Space, given: Sequence[str]) -> list[FloatArray]:
     for name, far in _FAR.items():
         if name in accused and name not in given:
             at = space.numbers.index(name)
-            heads = [_moved(head, at, z) for head in heads for z in (0.0, -far, far)]
+            heads = [_moved(head, at, z) for head in heads for z in (0.0, *far)]
     return heads
 
 

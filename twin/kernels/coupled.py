@@ -20,6 +20,7 @@ from twin.slots import (
     V_DRAG_OPEN_S,
     V_HELD,
     V_IN_MOTION,
+    V_KEPT,
     V_ON_STEM,
     V_OUTER,
     V_RATE_CLOSE,
@@ -180,7 +181,7 @@ def coupled_steps(
     stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
     x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
     speed, toward, travelled, rested, over = state[4], state[5], state[6], state[7], state[8]
-    out[0], on_stem, outer = x, c[V_ON_STEM], c[V_OUTER]
+    out[0], on_stem, outer, always = x, c[V_ON_STEM], c[V_OUTER], c[V_KEPT]
     last_h, (lags, drags, lates, stay) = -1.0, _lags(1.0, c)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
@@ -189,7 +190,7 @@ def coupled_steps(
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             fades = np.exp(-speed / fading) if stribeck > 0.0 or short > 0.0 else 0.0
             wide = widening[f if varies else 0] + wear * travelled
-            rubs, wide = on_stem * max(0.0, wide + outer), min(wide, -outer) if on_stem > 0.0 else wide
+            rubs, wide = always + on_stem * max(0.0, wide + outer), min(wide, -outer) if on_stem > 0.0 else wide
             more, softer = wide + stribeck * fades, 1.0
             more, less = more + relax * (x - late), more - relax * (x - late)
             if bent:

@@ -37,6 +37,7 @@ from twin.slots import (
     V_HIGH,
     V_IN_MOTION,
     V_INERTIA_S,
+    V_KEPT,
     V_LOW,
     V_ON_STEM,
     V_OUTER,
@@ -62,8 +63,8 @@ from twin.slots import (
     stem_stops,
 )
 
-_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_TAU_AFTER_S, V_ON_STEM, V_SQUARED_S, V_SQUARED_S + 1]
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_ON_STEM]
+_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_KEPT, V_TAU_AFTER_S, V_ON_STEM, V_SQUARED_S, V_SQUARED_S + 1]
+_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_KEPT, V_ON_STEM]
 _COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX, V_SQUARED_S, V_SQUARED_S + 1]
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4

@@ -1,0 +1,45 @@
+"""What takes the place of causes that are left out, and what does not."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from twin.catalog import effect
+from twin.choose.decide import DecisionRules
+from twin.choose.trim import _instead
+from twin.fit.space import Cause
+
+
+def one(name: str, mse: float, moved: float) -> Any:
+    """A fit with one cause; `moved`: how far its design number went, as a share of itself."""
+    found = None if name.startswith("parameter:") else effect(name)
+    causes = [Cause(name, found, found.forms[0] if found else None)]
+    space = SimpleNamespace(causes=causes, numbers=("deadband",), spreads=np.ones(1))
+    return SimpleNamespace(names=(name,), mse=mse, space=space, z=np.array([moved]))
+
+
+def best_instead(best: Any, left: Any, retuned: Any) -> Any:
+    fits = (best, left)
+    findings: Any = SimpleNamespace(
+        none=one("parameter:tau", 16.2, 0.0),
+        retuned=retuned,
+        fits=fits,
+        score=lambda f: -100.0 * f.mse,
+        best_of_size=lambda _size: min(fits, key=lambda f: f.mse),
+    )
+    return _instead(findings, left, DecisionRules())
+
+
+def test_an_effect_that_does_no_more_than_retuning_does_not_take_the_place_of_a_number() -> None:
+    """Two wrong numbers of which one is left out: every effect beside re-tuned numbers explains both."""
+    number, retuned = one("parameter:deadband", 1.24, 0.009), one("parameter:deadband", 0.97, 0.009)
+    assert best_instead(one("reduced_travel", 0.97, 0.009), number, retuned) is number
+
+
+def test_an_effect_that_spares_the_numbers_or_explains_more_does() -> None:
+    number, retuned = one("parameter:deadband", 1.24, 0.009), one("parameter:deadband", 1.20, 0.009)
+    for better in (one("reduced_travel", 0.97, 0.009), one("reduced_travel", 0.97, 0.001)):
+        assert best_instead(better, number, retuned) is better
