@@ -13,12 +13,13 @@ from twin.choose.trim import _instead
 from twin.fit.space import Cause
 
 
-def one(name: str, mse: float, moved: float) -> Any:
+def one(name: str, mse: float, moved: float, unfelt: float = 0.0) -> Any:
     """A fit with one cause; `moved`: how far its design number went, as a share of itself."""
     found = None if name.startswith("parameter:") else effect(name)
     causes = [Cause(name, found, found.forms[0] if found else None)]
-    space = SimpleNamespace(causes=causes, numbers=("deadband",), spreads=np.ones(1))
-    return SimpleNamespace(names=(name,), mse=mse, space=space, z=np.array([moved]))
+    space = SimpleNamespace(causes=causes, numbers=("deadband", "rate_limit"), spreads=np.ones(2), plant=lambda z: z)
+    z = np.array([moved, unfelt])
+    return SimpleNamespace(names=(name,), mse=mse, space=space, z=z, plant=z)
 
 
 def best_instead(best: Any, left: Any, retuned: Any) -> Any:
@@ -27,6 +28,8 @@ def best_instead(best: Any, left: Any, retuned: Any) -> Any:
         none=one("parameter:tau", 16.2, 0.0),
         retuned=retuned,
         fits=fits,
+        # nobody feels the rate limit, wherever it went
+        channel=SimpleNamespace(residuals=lambda z: np.array([1e3, 1e-3]) * z),
         score=lambda f: -100.0 * f.mse,
         best_of_size=lambda _size: min(fits, key=lambda f: f.mse),
     )
@@ -35,7 +38,7 @@ def best_instead(best: Any, left: Any, retuned: Any) -> Any:
 
 def test_an_effect_that_does_no_more_than_retuning_does_not_take_the_place_of_a_number() -> None:
     """Two wrong numbers of which one is left out: every effect beside re-tuned numbers explains both."""
-    number, retuned = one("parameter:deadband", 1.24, 0.009), one("parameter:deadband", 0.97, 0.009)
+    number, retuned = one("parameter:deadband", 1.24, 0.009), one("parameter:deadband", 0.97, 0.009, unfelt=-0.4)
     assert best_instead(one("reduced_travel", 0.97, 0.009), number, retuned) is number
 
 
