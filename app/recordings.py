@@ -37,7 +37,7 @@ def design_for(
     path: Path | None, recordings: Sequence[Recording], golden: Sequence[Recording] = ()
 ) -> tuple[DesignModel, str]:
     """The design in the recordings' units, and where it is from: a file, `golden` recordings of the healthy
-    machine, the defaults (psi and in), or the records.
+    machine, the defaults (records that were written in psi and in), or the records.
 
     Raises: `BadInput` or `JobFailed` when it cannot be had, with what to do.
     """
@@ -52,9 +52,15 @@ def design_for(
             raise error if str(error).startswith(str(path)) else BadInput(f"{path}: {error}") from error
     if golden:
         return _identified(golden, pressure_unit, position_unit), "identified from the healthy recordings"
-    if (pressure_unit, position_unit) == ("psi", "in"):
+    if (pressure_unit, position_unit) == ("psi", "in") and not any(_of_another_house(r) for r in recordings):
         return DesignModel(), "the defaults"
     return _identified(recordings, pressure_unit, position_unit), "identified from the record"
+
+
+def _of_another_house(recording: Recording) -> bool:
+    """Whether a file speaks of kPa or mm: it is not of the thesis's valve, whose numbers are in psi and in."""
+    foreign = cast("tuple[str, ...]", recording.meta.get("foreign", ()))
+    return "command" in foreign or "position" in foreign
 
 
 def _identified(recordings: Sequence[Recording], pressure_unit: str, position_unit: str) -> DesignModel:

@@ -92,7 +92,13 @@ def _load_table(
         notes=table.notes,
         locate=table.locate,
     )
-    return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta={"file": str(path)})
+    meta = {"file": str(path), "foreign": tuple(r for r, unit in stated.items() if _foreign(signals, r, unit))}
+    return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta=meta)
+
+
+def _foreign(signals: Signals, role: Role, unit: str) -> bool:
+    """Whether a column was written in another unit than the house's; a range says what it stands for itself."""
+    return signals.conversions[role].scale != 1.0 and "(" not in unit
 
 
 def _unit(role: Role, columns: Mapping[Role, Column], units: Mapping[Role, str], table: Table) -> str:

@@ -34,7 +34,11 @@ _IDENTIFIED = 0.2
 
 @click.command()
 @click.argument("runs", nargs=-1, type=click.Path(path_type=Path))
-@click.option("--design", type=click.Path(path_type=Path), help="Design model file; without it the thesis's numbers.")
+@click.option(
+    "--design",
+    type=click.Path(path_type=Path),
+    help="Design model file; without it the thesis's numbers, or the record's own outside of psi and in.",
+)
 @click.option(
     "--healthy",
     type=click.Path(path_type=Path),

@@ -11,19 +11,14 @@ from dataclasses import dataclass
 
 from twin.choose.claims import size_of
 from twin.choose.findings import Findings
+from twin.choose.idle import idle
 from twin.choose.reform import bent_by, lays_open
-from twin.fit.channel import Channel
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
-
-#: Share of the squared moves of the design numbers in re-tuning that an idle effect does not spare them.
-_SPARED = 0.5
 
 #: Squares of the design numbers' moves, in their priors' deviations, that nobody believes; and the share of them that a
 #: larger hypothesis may need to count as sparing the numbers.
 _BENT, _STRAIGHTER = 50.0, 0.2
-#: What a move of a design number changes at least in all squared residuals, noise = 1, if the signal feels it.
-_FELT = 1.0
 #: By how many unknowns a free curve exceeds a law.
 _FREE = 5
 #: Mean squared residual over the floor up to which a signal is explained to its noise.
@@ -141,10 +136,10 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """
     if size_of(fit) > 1:
         return fit
-    slack = _slack(findings, rules)
+    slack = slack_of(findings, rules)
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= max(fit.mse + slack, rules.within)]
-    if not idle(findings, fit, rules):
+    if not idle(findings, fit, slack):
         near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
         return fit
@@ -154,29 +149,9 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     return min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
 
 
-def _slack(findings: Findings, rules: DecisionRules) -> float:
+def slack_of(findings: Findings, rules: DecisionRules) -> float:
     """By how much more of the noise variance a plain hypothesis may leave."""
     return max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
-
-
-def idle(findings: Findings, fit: Fit, rules: DecisionRules) -> bool:
-    """Whether the effects of `fit` explain no more than re-tuning does, and spare the numbers nothing by it."""
-    retuned = findings.retuned
-    return retuned.mse <= fit.mse + _slack(findings, rules) and _moved(findings, fit) >= _SPARED * _moved(findings, retuned)
-
-
-def _moved(findings: Findings, fit: Fit) -> float:
-    """How far the design numbers moved: relative to themselves, squared. Those count that the signal feels: a rate limit
-    that is never met may go anywhere."""
-    return sum(z * z for k, z in enumerate(fit.z[: len(fit.space.numbers)]) if z and _feels(findings.channel, fit, k))
-
-
-def _feels(channel: Channel, fit: Fit, k: int) -> bool:
-    """Whether it would change the signal to leave a number as it was designed."""
-    as_designed = fit.z.copy()
-    as_designed[k] = 0.0
-    change = channel.residuals(fit.space.plant(as_designed)) - channel.residuals(fit.plant)
-    return float(change @ change) > _FELT
 
 
 def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:

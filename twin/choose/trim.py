@@ -11,8 +11,9 @@ from dataclasses import replace
 
 from twin.catalog import effects
 from twin.choose.claims import size_of
-from twin.choose.decide import Decision, DecisionRules, idle
+from twin.choose.decide import Decision, DecisionRules, slack_of
 from twin.choose.findings import Findings
+from twin.choose.idle import idle
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 
@@ -53,7 +54,7 @@ def _instead(findings: Findings, smaller: Fit, rules: DecisionRules) -> Fit:
     best = findings.best_of_size(size_of(smaller))
     if best is None or findings.score(best) <= findings.score(smaller) + rules.evidence:
         return smaller
-    return smaller if idle(findings, best, rules) else best
+    return smaller if idle(findings, best, slack_of(findings, rules)) else best
 
 
 def dropped(decision: Decision, name: str) -> Decision | None:

@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.choose.claims import hollow, size_of
-from twin.choose.decide import Decision, DecisionRules, idle
+from twin.choose.decide import Decision, DecisionRules, slack_of
+from twin.choose.idle import idle
 from twin.choose.usual import log_usual
 from twin.fit.fitting import Fit
 
@@ -98,7 +99,8 @@ def _comparable(decision: Decision) -> list[Fit]:
     fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
     fits = [f for f in fits if not _leans_on(f, accepted)]
     if accepted.names and not _effects(accepted):
-        fits = [f for f in fits if not _effects(f) or not idle(decision.findings, f, DecisionRules())]
+        slack = slack_of(decision.findings, DecisionRules())
+        fits = [f for f in fits if not _effects(f) or not idle(decision.findings, f, slack)]
     return [*fits, accepted]
 
 

@@ -1,0 +1,45 @@
+"""Which design a record is held to where nobody gives one."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app.recordings import design_for, load_all
+from control.design import DesignModel
+
+PSI_PER_KPA, IN_PER_MM = 0.1450377, 1.0 / 25.4
+
+
+def a_file(folder: Path, command: str, position: str, scale: tuple[float, float]) -> Path:
+    """A valve without backlash: 0.5 in for 10 psi after a lag of a second, written in other units."""
+    time_s = np.arange(0.0, 400.0, 0.2)
+    levels = np.random.default_rng(1).uniform(3.0, 13.0, time_s.size // 50)
+    psi = np.repeat(levels, 50)
+    stem, x = np.empty_like(psi), 0.05 * (psi[0] - 2.0)
+    for k, p in enumerate(psi):
+        x += 0.18 * (0.05 * (p - 2.0) - x)
+        stem[k] = x
+    stem += np.random.default_rng(2).normal(0.0, 5e-4, stem.size)
+    path = folder / "valve.csv"
+    table = np.column_stack([time_s, psi * scale[0], stem * scale[1]])
+    np.savetxt(path, table, delimiter=",", header=f"time_s,command_{command},position_{position}", comments="")
+    return path
+
+
+@pytest.mark.parametrize(
+    ("units", "scale", "defaults"),
+    [(("psi", "in"), (1.0, 1.0), True), (("kPa", "mm"), (1.0 / PSI_PER_KPA, 1.0 / IN_PER_MM), False)],
+)
+def test_a_file_in_other_units_is_of_another_valve(
+    tmp_path: Path, units: tuple[str, str], scale: tuple[float, float], defaults: bool
+) -> None:
+    recordings = load_all([a_file(tmp_path, *units, scale)], None, None, "before")
+    design, origin = design_for(None, recordings)
+    assert (origin == "the defaults") is defaults
+    assert (design == DesignModel()) is defaults
+    if not defaults:
+        assert design.compliance == pytest.approx(0.05, rel=0.02)
+        assert design.deadband < 0.05
