@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from app.records import foreign_options
+from app.targets import check_apart, check_file
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
@@ -42,8 +43,10 @@ def command(
     from twin.model_units import in_units_of
     from twin.simulate import simulate_recording
 
+    check_file("--out", out, (model, run))
+    check_apart({"--out": out, "--plot": plot})
     if plot is not None:
-        check_target(plot)
+        check_target(plot, (model, run))
     design = load_design(model)
     (recording,) = load_all([run], mapping, units, command_timing)
     try:

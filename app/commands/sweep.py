@@ -55,6 +55,7 @@ def command(
     as_json: bool,
     **bench: Any,
 ) -> None:
+    from app.targets import check_file
     from control.experiment_file import save_experiment
 
     found = profile_of(bench["profile"], bench["physics"])
@@ -62,6 +63,7 @@ def command(
     if period_s is not None:
         experiment = replace(experiment, period_s=period_s)
     if write_to is not None:
+        check_file("--write", write_to, (Path(what or ""), resume))
         save_experiment(experiment, write_to)
         click.echo(f"wrote {write_to}")
     elif dry_run:
@@ -84,10 +86,9 @@ def _sweep(
     **bench: Any,
 ) -> None:
     from app.job import perform
-    from logs.writer import check_empty
+    from app.targets import check_new_run
 
-    if out is not None:
-        check_empty(out)
+    check_new_run(out)
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
         _announce(session, experiment, job, as_json)

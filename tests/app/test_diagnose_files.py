@@ -13,7 +13,7 @@ from app.cli import run
 from tests.app.test_diagnose import columns_of, write
 from tests.control.toy_valve import Toy, random_steps, record
 from twin.choose.search import Searcher
-from twin.write import FILES
+from twin.files import FILES
 
 STALE = "of an earlier diagnosis"
 
