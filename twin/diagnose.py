@@ -230,7 +230,7 @@ def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned:
     named = {c.name for c in judgement.causes}
     # what is only seen in events and has no fit brings nothing that was fitted beside it
     fitted = named & set(result.causes) or named - set(sensing.accepted)
-    return (result.plant() if fitted else case.base).having(sensing.inserted())
+    return sensing.beside(result.plant() if fitted else case.base)
 
 
 def _model(plant: Plant, case: Case) -> tuple[DesignModel, dict[str, dict[str, str]]]:
