@@ -105,7 +105,7 @@ def _check(recordings: Sequence[Recording]) -> None:
             f"{first.name}: the command never changes; record a sweep, for example `lostmotion sweep staircase`"
         )
     moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
-    if moved < 8.0 * max(fast_noise(each.position) for each in recordings):
+    if moved <= 8.0 * max(fast_noise(each.position) for each in recordings):
         raise BadInput(
             f"{first.name}: the position never leaves its noise; identifying takes a record that moves over both curves"
         )
