@@ -94,10 +94,10 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
         ranking=_provisional(known.searches, weights),
         gap=numbers,
         where=whereabouts(case, driven_about(case.base, case), seed),
-        data_quality=(*case.notes, *known.notes),
+        data_quality=(*case.notes, *known.notes, _cut_short(known)),
         residual_signature={"interrupted_at": known.stage},
         structure=tuple(describe(case.signals)),
-        interrupted=True,
+        incomplete=f"interrupted at {known.stage}",
     )
     judgement = known.judgement
     if judgement is not None:
@@ -109,6 +109,13 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
             confusable=judgement.confusable,
         )
     return replace(diagnosis, statement=_statement(known, numbers))
+
+
+def _cut_short(known: Known) -> DataNote:
+    """What the verdict of an interrupted diagnosis is worth, for whoever reads no statement."""
+    undecided = "the verdict stands for no answer, and the ranking for the causes alone, as far as they were tried"
+    unchecked = "the verdict was reached, but not all of it was checked on held-out data"
+    return DataNote(f"the diagnosis was interrupted at {known.stage}", unchecked if known.judgement else undecided)
 
 
 def _plain_case(known: Known) -> Case:
