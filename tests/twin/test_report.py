@@ -105,7 +105,9 @@ def test_same_input_same_bytes(shown: Series, page: str, tmp_path: Path) -> None
 
 
 def test_a_page_of_an_unfinished_diagnosis_is_not_headed_by_a_verdict(shown: Series) -> None:
-    unfinished = replace(diagnosis(shown), verdict="unexplained", incomplete="interrupted at position: one cause (40 %)")
+    unfinished = replace(
+        diagnosis(shown), verdict="unexplained", incomplete="interrupted at position: one cause (40 %)"
+    )
     for text in (render(unfinished, shown), story(unfinished)):
         assert "No whole answer: interrupted at position: one cause (40 %)" in text
         assert VERDICTS["unexplained"] not in text
