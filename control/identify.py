@@ -95,8 +95,8 @@ def _check(recordings: Sequence[Recording]) -> None:
             )
         if (each.pressure_unit, each.position_unit) != (first.pressure_unit, first.position_unit):
             raise BadInput(
-                f"{each.name} is in {each.pressure_unit} and {each.position_unit}, {first.name} in "
-                f"{first.pressure_unit} and {first.position_unit}; bring them to the same units with --units"
+                f"{each.name} has [{each.pressure_unit}, {each.position_unit}], {first.name} "
+                f"[{first.pressure_unit}, {first.position_unit}]; bring them to the same units with --units"
             )
         if each.n < FEWEST_ROWS:
             raise BadInput(f"{each.name}: {each.n} rows are too few to identify anything; at least {FEWEST_ROWS}")

@@ -128,7 +128,22 @@ def _experiment(
     if what.endswith(".toml"):
         loaded = to_plain(load_experiment(Path(what)))
         return from_plain({**loaded, **given}, what), 0, {}
+    _refuse_path(what)
     return make_experiment(what, {"unit": unit, "seed": seed, **given}), 0, {}
+
+
+def _refuse_path(what: str) -> None:
+    """Raises: `BadInput` for something that is there and is no experiment: a recording, most likely."""
+    from control.experiment_catalog import experiment_kinds
+    from hal.errors import BadInput
+
+    path = Path(what)
+    if path.exists() and what not in experiment_kinds():
+        raise BadInput(
+            f"{path} is a {'folder' if path.is_dir() else 'file'} but no experiment; sweep takes a kind "
+            f"({', '.join(experiment_kinds())}) or an experiment file that ends in .toml"
+            + ("; a run that was stopped goes on with --resume" if path.is_dir() else "")
+        )
 
 
 def _resumed(path: Path) -> tuple[Experiment, int, dict[str, object]]:
