@@ -122,6 +122,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = replace(everything, decisions=result.decisions)
     parts, judgement = _upheld(parts, judgement, case, result, sensing, itself.disturbed)
     known.judgement = judgement
+    judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
     diagnosis = assembled(
@@ -198,7 +199,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     notes += admit(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
     noise = noise_of_refreshed(recordings, noise)
-    recordings, timing_notes = settled_timing(recordings, plant, noise)
+    recordings, timing_notes, known.slack = settled_timing(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), [*notes, *timing_notes], noise
     progress("noise and events", 1.0)
     design = plant.design
