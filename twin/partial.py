@@ -117,7 +117,7 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
 def _cut_short(known: Known) -> DataNote:
     """What the verdict of an interrupted diagnosis is worth, for whoever reads no statement."""
     undecided = "the verdict stands for no answer, and the ranking for the causes alone, as far as they were tried"
-    unchecked = "the verdict was reached, but not all of it was checked on held-out data"
+    unchecked = "its verdict is not checked on held-out data, and the updated model is the design as given"
     return DataNote(f"the diagnosis was interrupted at {known.stage}", unchecked if known.judgement else undecided)
 
 

@@ -36,6 +36,8 @@ def command(
     plot: Path | None,
     as_json: bool,
 ) -> None:
+    check_file("--out", out, (model, run))
+    check_apart({"--out": out, "--plot": plot})
     from app.fit_picture import Replay, check_target, draw
     from app.recordings import load_all
     from control.design import load_design
@@ -43,8 +45,6 @@ def command(
     from twin.model_units import in_units_of
     from twin.simulate import simulate_recording
 
-    check_file("--out", out, (model, run))
-    check_apart({"--out": out, "--plot": plot})
     if plot is not None:
         check_target(plot, (model, run))
     design = load_design(model)
