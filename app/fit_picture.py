@@ -5,11 +5,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from app.targets import check_file
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
@@ -41,15 +42,14 @@ def fit_percent(measured: FloatArray, modelled: FloatArray) -> float | None:
     return 100.0 * (1.0 - float(np.linalg.norm(measured[seen] - modelled[seen])) / spread) if spread > 0.0 else None
 
 
-def check_target(path: Path) -> None:
-    """Whether a picture can go there, said before the work is done. Raises: `BadInput`."""
+def check_target(path: Path, inputs: Iterable[Path | None] = ()) -> None:
+    """Whether a picture can go there and is none of `inputs`, said before the work is done. Raises: `BadInput`."""
     from matplotlib.figure import Figure as Canvas
 
     known = Canvas().canvas.get_supported_filetypes()
     if path.suffix.removeprefix(".").lower() not in known:
         raise BadInput(f"--plot {path}: a picture ends in .png, .svg or .pdf")
-    if not path.parent.is_dir():
-        raise BadInput(f"--plot {path}: there is no folder {path.parent}; name a file in a folder that exists")
+    check_file("--plot", path, inputs)
 
 
 def draw(path: Path, replays: Sequence[Replay], design: DesignModel, *, curves: bool) -> None:

@@ -27,8 +27,8 @@ def common_units(recordings: Sequence[Recording]) -> tuple[str, str]:
     for other in recordings[1:]:
         if (other.pressure_unit, other.position_unit) != (first.pressure_unit, first.position_unit):
             raise BadInput(
-                f"{other.name} is in {other.pressure_unit} and {other.position_unit}, {first.name} in "
-                f"{first.pressure_unit} and {first.position_unit}; give --units so that they agree"
+                f"{other.name} has [{other.pressure_unit}, {other.position_unit}], {first.name} "
+                f"[{first.pressure_unit}, {first.position_unit}]; give --units so that they agree"
             )
     return first.pressure_unit, first.position_unit
 

@@ -131,7 +131,7 @@ def make_controller(name: str, design: DesignModel, **settings: float | str) -> 
     kind = controller_class(name)
     if (design.pressure_unit, design.position_unit) != ("psi", "in"):
         raise BadInput(
-            f"controllers work in psi and in, this design is in {design.pressure_unit} and {design.position_unit}; "
+            f"controllers work in [psi, in], this design has [{design.pressure_unit}, {design.position_unit}]; "
             "convert the design model first"
         )
     known = setting_defaults(name)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import tomlkit
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic_core import ErrorDetails
 
 from hal.errors import BadInput
 
@@ -53,7 +54,7 @@ def check_for_control(design: DesignModel) -> None:
     """
     if (design.pressure_unit, design.position_unit) != ("psi", "in"):
         raise BadInput(
-            f"controllers work in psi and in, this design is in {design.pressure_unit} and {design.position_unit}; "
+            f"controllers work in [psi, in], this design has [{design.pressure_unit}, {design.position_unit}]; "
             "convert the design model first"
         )
     if design.deadband <= 0.0:
@@ -105,9 +106,7 @@ def load_design(path: Path) -> DesignModel:
     except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{path}: not a TOML file ({error}); see the design model format in docs") from error
     except ValidationError as error:
-        first = error.errors()[0]
-        key = ".".join(str(part) for part in first["loc"])
-        raise BadInput(f"{path}: {key}: {first['msg']} (value {first.get('input')!r})") from error
+        raise BadInput(f"{path}: {_wrong(error.errors()[0])}") from error
     if data.units.time not in ("s", "ms", "min"):
         raise BadInput(f"{path}: units.time is {data.units.time!r}; use s, ms or min")
     if data.valve.a1 < data.valve.a2:
@@ -125,6 +124,14 @@ def load_design(path: Path) -> DesignModel:
         position_unit=data.units.position,
         effects=data.effects,
     )
+
+
+def _wrong(first: ErrorDetails) -> str:
+    """What is wrong with a key, in words; a table is named by its key and not shown."""
+    key, value = ".".join(str(part) for part in first["loc"]), first["input"]
+    if first["type"] == "missing":
+        return f"{key} is missing; a design model file needs it, in the units that its [units] names"
+    return f"{key}: {first['msg']}" + ("" if isinstance(value, dict | list) else f" (value {value!r})")
 
 
 def save_design(

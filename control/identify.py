@@ -95,8 +95,8 @@ def _check(recordings: Sequence[Recording]) -> None:
             )
         if (each.pressure_unit, each.position_unit) != (first.pressure_unit, first.position_unit):
             raise BadInput(
-                f"{each.name} is in {each.pressure_unit} and {each.position_unit}, {first.name} in "
-                f"{first.pressure_unit} and {first.position_unit}; bring them to the same units with --units"
+                f"{each.name} has [{each.pressure_unit}, {each.position_unit}], {first.name} "
+                f"[{first.pressure_unit}, {first.position_unit}]; bring them to the same units with --units"
             )
         if each.n < FEWEST_ROWS:
             raise BadInput(f"{each.name}: {each.n} rows are too few to identify anything; at least {FEWEST_ROWS}")
@@ -105,7 +105,7 @@ def _check(recordings: Sequence[Recording]) -> None:
             f"{first.name}: the command never changes; record a sweep, for example `lostmotion sweep staircase`"
         )
     moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
-    if moved < 8.0 * max(fast_noise(each.position) for each in recordings):
+    if moved <= 8.0 * max(fast_noise(each.position) for each in recordings):
         raise BadInput(
             f"{first.name}: the position never leaves its noise; identifying takes a record that moves over both curves"
         )

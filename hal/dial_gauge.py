@@ -106,6 +106,12 @@ def _line(pairs: Sequence[Pair], places: Sequence[float]) -> list[Pair]:
     return [(mean_y + slope * (place - mean_x), place) for place in (places[0], places[-1])]
 
 
+def check_new(target: Path) -> None:
+    """Raises: `BadInput` when `target` exists already."""
+    if target.exists():
+        raise BadInput(f"{target} exists already; choose another name, calibrations are kept")
+
+
 def write_profile(source: Path, target: Path, calibration: Calibration) -> None:
     """A copy of a profile with another calibration; comments and order stay as they are.
 
@@ -113,8 +119,7 @@ def write_profile(source: Path, target: Path, calibration: Calibration) -> None:
     """
     import tomlkit
 
-    if target.exists():
-        raise BadInput(f"{target} exists already; choose another name, calibrations are kept")
+    check_new(target)
     document = tomlkit.parse(source.read_text(encoding="utf-8"))
     table = tomlkit.table()
     for key, value in calibration.model_dump(exclude_none=True).items():

@@ -156,7 +156,7 @@ def _check_units(signals: Signals, where: str) -> None:
             continue
         percent = one if units[one] == "percent" else other
         raise BadInput(
-            f"{where}: {one} is in {units[one]} and {other} in {units[other]}; say which range the percent belong to, "
+            f"{where}: {one} has [{units[one]}] and {other} [{units[other]}]; say which range the percent belong to, "
             f"as in --units '{percent}=percent({span})', or leave one out with --map {other}="
         )
 

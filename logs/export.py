@@ -71,11 +71,14 @@ def _rank(name: str) -> int:
 
 def _write(target: Path, write: Callable[[BinaryIO], None]) -> None:
     """Writes beside the target and renames, so that a full disk leaves no half file under its name."""
-    partial = target.with_name(target.name + ".partial")
+    special = target.exists() and not target.is_file()  # a pipe or a device: written to, not replaced
+    partial = target if special else target.with_name(target.name + ".partial")
     try:
         with partial.open("wb") as file:
             write(file)
-        partial.replace(target)
+        if not special:
+            partial.replace(target)
     except OSError as error:
-        partial.unlink(missing_ok=True)
+        if not special:
+            partial.unlink(missing_ok=True)
         raise BadInput(f"{target}: cannot be written ({error.strerror or error}); name another file") from error

@@ -12,6 +12,7 @@ START = "run.json"  # the start document, complete before the first sample
 SAMPLES = "samples.arrows"  # Arrow IPC stream, append-only
 EVENTS = "events.jsonl"  # one JSON object a line, append-only
 STOP = "stop.json"  # the stop document; a run without it is running or has crashed
+RECORD = frozenset({START, SAMPLES, EVENTS, STOP})  # what nothing but the recorder writes
 VIEW = "view.rrd"  # a view for rerun, made from the record; never the truth
 
 

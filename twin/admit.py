@@ -27,6 +27,7 @@ PREDICTED = 0.1
 _ABSURD = 3.0
 _CONTRARY = -0.5
 _STEP_S = 0.1
+_PARTS = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +46,7 @@ def admit(recordings: Sequence[Recording], plant: Plant, noise: NoiseModel) -> l
     """
     names = ", ".join(r.name for r in recordings[:3]) + (", ..." if len(recordings) > 3 else "")
     notes = _long_enough(recordings, plant, names)
+    _refuse_undriven(recordings, plant)
     motions = [_motion(r, plant) for r in recordings]
     still = max(m.reading for m in motions) <= STILL_SIGMAS * noise.position.sigma
     if still:
@@ -108,6 +110,28 @@ def _refuse_still(recordings: Sequence[Recording], motions: Sequence[_Motion], p
             f"{names}: the position never leaves its noise while the command should move it by {share:.0f} % of "
             "travel; the stem is stuck, the position sensor is not read, or --map names the wrong column"
         )
+
+
+def _refuse_undriven(recordings: Sequence[Recording], plant: Plant) -> None:
+    """A stem that comes and goes while it is told one thing: none of the effects does that, so none could be tested."""
+    travel = plant.design.travel
+    for one in recordings:
+        share = _to_and_fro(one.position[np.isfinite(one.position)]) / travel
+        if float(np.ptp(one.command)) <= 0.0 and share > PREDICTED:
+            raise BadInput(
+                f"{one.name}: the command never changes while the stem goes to and fro over {100.0 * share:.0f} % of "
+                "travel, so what moved it is not in the record; check the column (--map command=...), or record a sweep"
+            )
+
+
+def _to_and_fro(reading: FloatArray) -> float:
+    """How far the reading goes both up and down again, in medians of parts of the record: false readings are none, nor
+    is a quick swing, which has an answer of its own."""
+    parts = np.array([np.median(part) for part in np.array_split(reading, _PARTS) if part.size])
+    if parts.size == 0:
+        return 0.0
+    rise = np.max(parts - np.minimum.accumulate(parts))
+    return float(min(rise, np.max(np.maximum.accumulate(parts) - parts)))
 
 
 def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) -> None:

@@ -69,8 +69,14 @@ def gap(
     seed: int = 0,
     floor_relative_error: float = FLOOR_DOUBT,
 ) -> Gap:
-    """The held-out numbers of a diagnosis in percent of travel; residuals, floor and travel share one unit."""
+    """The held-out numbers of a diagnosis in percent of travel; residuals, floor and travel share one unit.
+
+    `before` and `after` are over the rows that both predict; without an `after` there is no closed share.
+    """
     percent = 100.0 / travel
+    common = np.isfinite(before) & np.isfinite(after)
+    if common.any():  # so that the closed share is that of the errors beside it
+        before, after = before[common], after[common]
     return Gap(
         before=percent * rms(before),
         retuned=percent * rms(retuned),

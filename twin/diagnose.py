@@ -122,6 +122,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = replace(everything, decisions=result.decisions)
     parts, judgement = _upheld(parts, judgement, case, result, sensing, itself.disturbed)
     known.judgement = judgement
+    judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
     diagnosis = assembled(
@@ -198,7 +199,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     notes += admit(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
     noise = noise_of_refreshed(recordings, noise)
-    recordings, timing_notes = settled_timing(recordings, plant, noise)
+    recordings, timing_notes, known.slack = settled_timing(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), [*notes, *timing_notes], noise
     progress("noise and events", 1.0)
     design = plant.design
@@ -230,7 +231,7 @@ def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned:
     named = {c.name for c in judgement.causes}
     # what is only seen in events and has no fit brings nothing that was fitted beside it
     fitted = named & set(result.causes) or named - set(sensing.accepted)
-    return (result.plant() if fitted else case.base).having(sensing.inserted())
+    return sensing.beside(result.plant() if fitted else case.base)
 
 
 def _model(plant: Plant, case: Case) -> tuple[DesignModel, dict[str, dict[str, str]]]:

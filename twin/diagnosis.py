@@ -2,7 +2,7 @@
 
 Everything here is data. The keys that scripts rely on are those of the interfaces page; keys beyond them
 (`statement`, `gap_by_condition`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`,
-`interrupted`, a cause's `form`, a candidate's `rejected`) are free.
+`complete`, `incomplete_because`, `interrupted`, a cause's `form`, a candidate's `rejected`) are free.
 """
 
 from __future__ import annotations
@@ -124,7 +124,7 @@ class EffectTest:
 class Diagnosis:
     """The verdict on a set of recordings. `statement` is the sentence an operator reads first.
 
-    `interrupted`: Ctrl-C came before the end, and what is here is what was known by then.
+    `incomplete`: why this is no whole answer, empty if it is one; the verdict may then be nothing but a place holder.
     """
 
     verdict: Verdict
@@ -142,7 +142,7 @@ class Diagnosis:
     noise: Mapping[str, object] = field(default_factory=dict)
     closed_loop: Mapping[str, object] = field(default_factory=dict)
     version: str = ""
-    interrupted: bool = False
+    incomplete: str = ""
     gap_by_condition: Gap | None = None
 
     def to_json(self) -> dict[str, object]:
@@ -164,7 +164,9 @@ class Diagnosis:
             "noise": self.noise,
             "closed_loop": self.closed_loop,
             "version": self.version,
-            "interrupted": self.interrupted,
+            "complete": not self.incomplete,
+            "incomplete_because": self.incomplete or None,
+            "interrupted": bool(self.incomplete),
         }
         plain = json_ready(document)
         assert isinstance(plain, dict)

@@ -12,16 +12,22 @@ from twin.catalog import effect
 from twin.effect import Scales
 
 #: What an operator can do about percent beside another unit, where the record is a file.
-_OF_A_FILE = "give the range with --units, as in {quantity}=percent(0..1 {unit}), or identify a model from the record"
+_OF_A_FILE = (
+    "give the range, as in --units '{quantity}=percent(0..{full:.4g} {unit})', or identify a model from the record"
+)
+
+#: ... and where it is the model that is in percent, whose range no option gives.
+_OF_PERCENT = "identify a model from such a recording"
 
 
-def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str, remedy: str = _OF_A_FILE) -> DesignModel:
-    """The same valve in other units; `remedy` is what to do where that cannot be, for the error.
+def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str, remedy: str = "") -> DesignModel:
+    """The same valve in other units; `remedy`: what to do where that cannot be, if the record is no file.
 
     Raises: `BadInput` when the model is in percent and the recording is not, or the other way round.
     """
-    pressure = _factor(design.pressure_unit, pressure_unit, "pressure", remedy)
-    position = _factor(design.position_unit, position_unit, "position", remedy)
+    shut = design.a1 + design.travel / design.compliance
+    pressure = _factor(design.pressure_unit, pressure_unit, "pressure", shut, remedy)
+    position = _factor(design.position_unit, position_unit, "position", design.travel, remedy)
     if pressure == position == 1.0:
         return replace(design, pressure_unit=pressure_unit, position_unit=position_unit)
     scales = Scales(pressure=pressure, position=position)
@@ -38,14 +44,16 @@ def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str, rem
     )
 
 
-def _factor(unit: str, wanted: str, quantity: Quantity, remedy: str) -> float:
+def _factor(unit: str, wanted: str, quantity: Quantity, full: float, remedy: str) -> float:
+    """`full`: what 100 % probably is, in `unit`, for the remedy."""
     if plain_name(unit) == plain_name(wanted):
         return 1.0
     given, needed = conversion(unit, quantity), conversion(wanted, quantity)
     if PERCENT in (given.unit, needed.unit) and given.unit != needed.unit:
+        ours = _OF_PERCENT if given.unit == PERCENT else _OF_A_FILE.format(quantity=quantity, unit=unit, full=full)
         raise BadInput(
-            f"the model's {quantity} is in {unit} and the recording's in {wanted}, and nothing says what 100 % is; "
-            + remedy.format(quantity=quantity, unit=unit)
+            f"the model has its {quantity} in [{unit}], the recording in [{wanted}], and nothing says what 100 % is; "
+            + (remedy or ours)
         )
     return given.scale / needed.scale
 

@@ -24,6 +24,7 @@ from twin.noise.copies import used_once
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Plant
 from twin.stages import driven_about
+from twin.timing import Slack
 from twin.verdict import Judgement
 from twin.where.isolability import describe
 from twin.whereabouts import whereabouts
@@ -43,7 +44,8 @@ class Interrupted(KeyboardInterrupt):
 class Known:
     """What a diagnosis has found out so far, and what its progress was told last.
 
-    `margin_share`: the largest share of the margin in a channel's variance. `searches`: those that were begun.
+    `margin_share`: the largest share of the margin in a channel's variance. `searches`: those that were begun. `slack`:
+    what the timing of the commands leaves open.
     """
 
     recordings: tuple[Recording, ...]
@@ -54,6 +56,7 @@ class Known:
     margin_share: float = 0.0
     searches: list[Searcher] = field(default_factory=list)
     judgement: Judgement | None = None
+    slack: Slack = field(default_factory=Slack)
     what: str = "the start"
     share: float = 0.0
 
@@ -68,7 +71,7 @@ class Known:
 
     def take(self, other: Known) -> None:
         """Goes on with what a further search was made on."""
-        self.recordings, self.notes, self.noise = other.recordings, other.notes, other.noise
+        self.recordings, self.notes, self.noise, self.slack = other.recordings, other.notes, other.noise, other.slack
         self.case, self.margin_share, self.searches = other.case, other.margin_share, other.searches
 
     @property
@@ -94,21 +97,28 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
         ranking=_provisional(known.searches, weights),
         gap=numbers,
         where=whereabouts(case, driven_about(case.base, case), seed),
-        data_quality=(*case.notes, *known.notes),
+        data_quality=(*case.notes, *known.notes, _cut_short(known)),
         residual_signature={"interrupted_at": known.stage},
         structure=tuple(describe(case.signals)),
-        interrupted=True,
+        incomplete=f"interrupted at {known.stage}",
     )
     judgement = known.judgement
     if judgement is not None:
         diagnosis = replace(
             diagnosis,
             verdict=judgement.verdict,
-            causes=judgement.causes,
+            causes=known.slack.loosened(judgement.causes),
             ranking=judgement.ranking,
             confusable=judgement.confusable,
         )
     return replace(diagnosis, statement=_statement(known, numbers))
+
+
+def _cut_short(known: Known) -> DataNote:
+    """What the verdict of an interrupted diagnosis is worth, for whoever reads no statement."""
+    undecided = "the verdict stands for no answer, and the ranking for the causes alone, as far as they were tried"
+    unchecked = "its verdict is not checked on held-out data, and the updated model is the design as given"
+    return DataNote(f"the diagnosis was interrupted at {known.stage}", unchecked if known.judgement else undecided)
 
 
 def _plain_case(known: Known) -> Case:

@@ -6,7 +6,7 @@ other effect (its trajectory is simulated), so that it competes with lags.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,7 +21,7 @@ from twin.events.evidence import Evidence
 from twin.events.scan import ON_CHANGE, Events, scan_events
 from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel, estimate_noise
-from twin.plant import Inserted
+from twin.plant import Inserted, Plant
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
@@ -70,6 +70,13 @@ class Sensing:
             return ()
         return (Inserted("sensor_quantization", effect("sensor_quantization").forms[0], (self.step,)),)
 
+    def beside(self, plant: Plant) -> Plant:
+        """`plant` with every accepted event: what is named and was not fitted gets the first form that the estimates
+        are enough for. A false reading is chance and a held one lasts as long as it is seen to: they move nothing."""
+        seen = plant.having(self.inserted())
+        names = {one.effect for one in seen.inserted}
+        return seen.having([_as_estimated(*event) for event in self.accepted.items() if event[0] not in names])
+
     @property
     def sharp(self) -> bool:
         """Whether the reading is in coarse steps, all of its codes occur, and it is new in every row."""
@@ -113,6 +120,13 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if stale.found and stale.log_likelihood_ratio > _HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     return Sensing(events, accepted, step, _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0)
+
+
+def _as_estimated(name: str, estimates: Mapping[str, Estimate]) -> Inserted:
+    """The event's effect with the estimated values. Every event's effect has such a form (a test looks at them all)."""
+    forms = effect(name).forms
+    form = next(f for f in forms if all(p.name in estimates for p in f.parameters))
+    return Inserted(name, form, tuple(estimates[p.name].value for p in form.parameters))
 
 
 def _slow_refresh(stale: Evidence) -> bool:

@@ -11,17 +11,16 @@ from control.design import DesignModel, save_design
 from logs.recording import FloatArray
 from twin.diagnose import Outcome
 from twin.diagnosis import Diagnosis, write_diagnosis
+from twin.files import FILES
 from twin.report.page import write_report
 from twin.report.series import Series
 from twin.rrd import write_rrd
 
 Progress = Callable[[str, float], None]
-#: Everything that a diagnosis writes; `rounds.json` is the circle's.
-FILES = ("diagnosis.json", "model.toml", "next.toml", "report.html", "diagnosis.rrd", "rounds.json")
 
 
 def write_outcome(outcome: Outcome, folder: Path, progress: Progress) -> None:
-    """Writes all files of a diagnosis into `folder`, which exists; the verdict first, the pictures after it.
+    """Writes all files of a diagnosis into `folder`; the verdict first, the pictures after it.
 
     What an earlier diagnosis left there goes first: no file may speak of another verdict than the one beside it.
     """
@@ -46,7 +45,8 @@ def write_known(diagnosis: Diagnosis, design: DesignModel, folder: Path) -> None
 
 
 def clear(folder: Path) -> None:
-    """Removes the files of an earlier diagnosis from `folder`; records and anything else stay."""
+    """Makes `folder`, or removes the files of an earlier diagnosis from it; records and anything else stay."""
+    folder.mkdir(parents=True, exist_ok=True)
     for name in FILES:
         (folder / name).unlink(missing_ok=True)
 

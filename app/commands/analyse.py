@@ -54,6 +54,7 @@ def command(
         raise BadInput("--sweep and --modbus are about one law; give --law as well")
     if law != "pi" and (ki or (sweep or "").startswith("ki=")):
         raise BadInput("only --law pi has a ki")
+    _check_targets(csv_file, plot, design)
     model = load_design(design) if design else DesignModel()
     check_for_control(model)
     base = LinearLoop("p", kp, ki if law == "pi" else 0.0, model.ep_tau_s, model.tau_s, dead_time, period, late)
@@ -69,6 +70,16 @@ def command(
         click.echo(json.dumps([asdict(case) for case in cases], indent=1))
     else:
         _print(cases, model.travel, modbus)
+
+
+def _check_targets(csv_file: Path | None, plot: Path | None, design: Path | None) -> None:
+    from app.fit_picture import check_target
+    from app.targets import check_file
+
+    if csv_file is not None:
+        check_file("--csv", csv_file, (design,))
+    if plot is not None:
+        check_target(plot, (design,))
 
 
 def _draw(cases: Sequence[Case], model: DesignModel, swept: Sweep | None, path: Path) -> None:

@@ -36,8 +36,10 @@ def command(trials: int, seed: int, out: Path | None, family: str, processes: in
     from app.blind.pool import read_lines
     from app.blind.protocol import begin
     from app.blind.trial import orders
+    from app.targets import check_folder
 
     folder = out or Path("logs/runs") / f"{datetime.now(UTC):%Y%m%dT%H%M%S}-blind"
+    check_folder("--out", folder)
     every = orders(trials, seed, family, folder, keep)
     protocol = begin(folder, every, seed, family)
     done = {line["trial"] for line in read_lines(folder)}

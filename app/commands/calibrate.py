@@ -47,9 +47,8 @@ def command(
     from hal.clock import utc_now
     from hal.dial_gauge import fit, read_pairs, write_profile
     from hal.errors import BadInput
-    from hal.profile import load_profile
 
-    load_profile(profile)
+    _check_files(profile, out)
     if (readings is None) == (port is None) or (commands is not None and port is None):
         raise BadInput("give either READINGS.csv, or --port and, if the valve is to be moved, --at")
     pairs = read_pairs(readings) if readings is not None else ask(profile, str(port), commands)
@@ -65,6 +64,18 @@ def command(
     if out is not None:
         write_profile(_file_of(profile), out, found.calibration)
     _show(found, out, as_json)
+
+
+def _check_files(profile: str, out: Path | None) -> None:
+    """Before anybody has typed a reading. Raises: `BadInput`."""
+    from app.targets import check_file
+    from hal.dial_gauge import check_new
+    from hal.profile import load_profile
+
+    load_profile(profile)
+    if out is not None:
+        check_new(out)
+        check_file("--out", out)
 
 
 def _file_of(profile: str) -> Path:

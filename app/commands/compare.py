@@ -63,6 +63,7 @@ def command(
     """
     from dataclasses import fields
 
+    from app.fit_picture import check_target
     from app.options import listed
     from app.progress import counted
     from app.rivals import run_all
@@ -83,6 +84,8 @@ def command(
     chosen = [s.name for s in chosen_scenarios(listed(scenarios))]
     first = first_seed if first_seed is not None else FIRST_SEED if held_out else 0
     known = load_design(design) if design else DesignModel()
+    if plot is not None:
+        check_target(plot, (design,))
     todo = jobs(names, chosen, range(first, first + seeds), period, known, held_out)
     results = counted(run_all(todo, processes), len(todo), f"{len(todo)} trials")
     if plot is not None:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import click
 
+from app.targets import check_folder
+
 #: A sealed valve of the thesis's family with one effect; chosen so that there is something to find. Try others.
 SEED = "valve-8"
 CONTROLLER = "brake"
@@ -22,6 +24,7 @@ def command(out: Path | None, sealed: str) -> None:
     Every line that starts with $ is a command that you can type yourself.
     """
     folder = out or Path("logs/runs") / f"{datetime.now(UTC):%Y%m%dT%H%M%S}-demo"
+    check_folder("--out", folder)
     folder.mkdir(parents=True, exist_ok=True)
     healthy, model, loop, blind = (folder / name for name in ("sweep", "model.toml", "loop", "sealed"))
     _chapter("1. Sweep a valve over Modbus and find its two curves")

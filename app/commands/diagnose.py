@@ -73,17 +73,22 @@ def command(
     (without --port: on the virtual valve) and diagnosed together with RUNS, which may then be left out.
     """
     from app.recordings import load_all
+    from app.targets import check_folder
+    from control.design import load_design
     from hal.errors import BadInput
+    from twin.files import FILES
 
     if not runs and not active:
         raise BadInput("name a run to diagnose, or let --active make one: diagnose RUN... --out DIR")
+    if not active and any(value for name, value in bench.items() if name != "seed"):
+        raise BadInput("options that choose a bench need --active: without it nothing but files is touched")
+    check_folder("--out", out, (*runs, *healthy, design), writes=FILES)
+    if design is not None:
+        load_design(design)  # a file that is no design is told at once, and leaves nothing
     recordings, golden = (load_all(paths, mapping, units, command_timing) for paths in (runs, healthy))
-    out.mkdir(parents=True, exist_ok=True)
     if active:
         outcome = _pursued(recordings, golden, design, out, budget_minutes, bench)
     else:
-        if any(value for name, value in bench.items() if name != "seed"):
-            raise BadInput("options that choose a bench need --active: without it nothing but files is touched")
         outcome = _diagnosed(recordings, golden, design, out, bench["seed"])
     _print(outcome, out, as_json)
 

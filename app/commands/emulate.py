@@ -89,12 +89,14 @@ def _sealed(seed: str, commitment: Path | None, chosen: bool) -> tuple[ValvePhys
 
     Raises: `BadInput` when the operator has `chosen` a plant or an effect besides.
     """
-    from sim_device.sealed import draw, write
+    from app.targets import check_file
+    from sim_device.sealed import FILE_NAME, draw, write
 
     if chosen:
         raise BadInput("--sealed draws the valve and what is wrong with it; leave out --physics, --effect and --plant")
     drawn = draw(seed)
     if commitment is not None:
+        check_file("--commitment", commitment / FILE_NAME if commitment.is_dir() else commitment)
         write(commitment, drawn)
     return drawn.physics, {"physics": f"{drawn.family}, sealed", "commitment": drawn.commitment}
 

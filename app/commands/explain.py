@@ -43,8 +43,11 @@ def command(
             raise BadInput(f"{name} is a number of the design model: --form, --experiment and --out are for effects")
         _number_of_design(name.removeprefix("parameter:"), as_json)
         return
+    from app.targets import check_folder
     from twin.explain import KINDS, signature, visibilities
 
+    if out is not None:
+        check_folder("--out", out)
     one = effect(name)
     form = _form(one, form_name)
     if kind is not None and kind not in KINDS:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 import click
 
 from app.records import foreign_options, open_run, say_problems
+from app.targets import check_apart, check_file
 
 
 @click.command()
@@ -33,6 +35,7 @@ def command(
     if csv_file is None and parquet_file is None:
         raise click.UsageError("say what to write: --csv FILE, --parquet FILE, or both")
     record = open_run(run, mapping, units, command_timing)
+    _check({"--csv": None if str(csv_file) == "-" else csv_file, "--parquet": parquet_file}, record.path)
     say_problems(record)
     if csv_file is not None and str(csv_file) == "-":
         write_csv(record, sys.stdout.buffer)
@@ -42,3 +45,10 @@ def command(
     if parquet_file is not None:
         write_parquet(record, parquet_file)
         click.echo(f"{parquet_file}: {record.rows} samples, {len(record.columns)} columns", err=str(csv_file) == "-")
+
+
+def _check(targets: Mapping[str, Path | None], record: Path) -> None:
+    check_apart(targets)
+    for option, path in targets.items():
+        if path is not None:
+            check_file(option, path, (record,))

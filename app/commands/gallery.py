@@ -20,9 +20,12 @@ def command(keys: tuple[str, ...], out: Path, check: bool) -> None:
     """
     from app.gallery import page, stale
     from app.gallery.index import checked, make
+    from app.targets import check_folder
     from hal.errors import JobFailed
 
     chosen = checked(keys)
+    if not check:
+        check_folder("--out", out)
     found: dict[str, int] = {}
     for number, key in enumerate(chosen, start=1):
         started_s = time.monotonic()

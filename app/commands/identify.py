@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from app.records import foreign_options
+from app.targets import check_file
 
 if TYPE_CHECKING:
     from control.identify_result import Estimate, Identified
@@ -40,10 +41,11 @@ def command(
 
     if out.suffix != ".toml":
         raise BadInput(f"--out {out}: a model file ends in .toml")
+    check_file("--out", out, runs, parents=True)
     if plot is not None:
         from app.fit_picture import check_target
 
-        check_target(plot)
+        check_target(plot, runs)
     recordings = load_all(runs, mapping, units, command_timing)
     found = identify(recordings)
     try:

@@ -133,13 +133,12 @@ def _run(
 ) -> None:
     from app.held_targets import report
     from app.job import perform
+    from app.targets import check_new_run
     from app.twin_beside import with_twin
     from control.tracking import judge_targets
     from logs.run import read_run
-    from logs.writer import check_empty
 
-    if out is not None:
-        check_empty(out)
+    check_new_run(out)
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, wanted, {"note": note, "operator": operator, "seed": seed})
         if twin is not None:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import click
 
 from app.records import foreign_options
+from app.targets import check_apart, check_file
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
@@ -35,6 +36,8 @@ def command(
     plot: Path | None,
     as_json: bool,
 ) -> None:
+    check_file("--out", out, (model, run))
+    check_apart({"--out": out, "--plot": plot})
     from app.fit_picture import Replay, check_target, draw
     from app.recordings import load_all
     from control.design import load_design
@@ -43,7 +46,7 @@ def command(
     from twin.simulate import simulate_recording
 
     if plot is not None:
-        check_target(plot)
+        check_target(plot, (model, run))
     design = load_design(model)
     (recording,) = load_all([run], mapping, units, command_timing)
     try:

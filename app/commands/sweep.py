@@ -55,6 +55,7 @@ def command(
     as_json: bool,
     **bench: Any,
 ) -> None:
+    from app.targets import check_file
     from control.experiment_file import save_experiment
 
     found = profile_of(bench["profile"], bench["physics"])
@@ -62,6 +63,7 @@ def command(
     if period_s is not None:
         experiment = replace(experiment, period_s=period_s)
     if write_to is not None:
+        check_file("--write", write_to, (Path(what or ""), resume))
         save_experiment(experiment, write_to)
         click.echo(f"wrote {write_to}")
     elif dry_run:
@@ -84,10 +86,9 @@ def _sweep(
     **bench: Any,
 ) -> None:
     from app.job import perform
-    from logs.writer import check_empty
+    from app.targets import check_new_run
 
-    if out is not None:
-        check_empty(out)
+    check_new_run(out)
     with open_bench(seed=seed, **bench) as session:
         job = _job(session, experiment, first, {"note": note, "operator": operator, "seed": seed, **continues})
         _announce(session, experiment, job, as_json)
@@ -127,7 +128,22 @@ def _experiment(
     if what.endswith(".toml"):
         loaded = to_plain(load_experiment(Path(what)))
         return from_plain({**loaded, **given}, what), 0, {}
+    _refuse_path(what)
     return make_experiment(what, {"unit": unit, "seed": seed, **given}), 0, {}
+
+
+def _refuse_path(what: str) -> None:
+    """Raises: `BadInput` for something that is there and is no experiment: a recording, most likely."""
+    from control.experiment_catalog import experiment_kinds
+    from hal.errors import BadInput
+
+    path = Path(what)
+    if path.exists() and what not in experiment_kinds():
+        raise BadInput(
+            f"{path} is a {'folder' if path.is_dir() else 'file'} but no experiment; sweep takes a kind "
+            f"({', '.join(experiment_kinds())}) or an experiment file that ends in .toml"
+            + ("; a run that was stopped goes on with --resume" if path.is_dir() else "")
+        )
 
 
 def _resumed(path: Path) -> tuple[Experiment, int, dict[str, object]]:

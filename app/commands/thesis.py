@@ -20,10 +20,13 @@ def command(keys: tuple[str, ...], plot: Path | None, as_json: bool) -> None:
     """
     from app.gallery import figure, page
     from app.gallery.index import KEYS, checked, make
+    from app.targets import check_folder
 
     if not keys:
         click.echo(" ".join(KEYS))
         return
+    if plot is not None:
+        check_folder("--plot", plot)
     made = [make(key) for key in checked(keys)]
     for entry in made:
         if plot is not None:

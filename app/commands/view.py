@@ -39,8 +39,12 @@ def command(
     as a .rrd file of a run or of a diagnosis, is opened as it is. The viewer listens on this machine only and sends
     nothing out.
     """
+    from app.targets import check_file
     from logs.viewer import has_screen, open_window
 
+    for option, target in (("--rrd", rrd), ("--headless-png", png)):
+        if target is not None:
+            check_file(option, target, (Path(run), design))
     if run.startswith("rerun+"):
         _need_screen(has_screen(), run)
         click.echo(f"viewer opened, process {open_window(run).pid}")

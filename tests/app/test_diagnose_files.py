@@ -13,7 +13,7 @@ from app.cli import run
 from tests.app.test_diagnose import columns_of, write
 from tests.control.toy_valve import Toy, random_steps, record
 from twin.choose.search import Searcher
-from twin.write import FILES
+from twin.files import FILES
 
 STALE = "of an earlier diagnosis"
 
@@ -59,7 +59,8 @@ def stop(*arguments: Any, **_: Any) -> None:
 def test_nothing_of_an_earlier_diagnosis_stays(file: str, out: Path) -> None:
     assert run(["diagnose", file, "--out", str(out)]) == 0
     assert stale_in(out) == ["notes.txt"]
-    assert json.loads((out / "diagnosis.json").read_text())["interrupted"] is False
+    found = json.loads((out / "diagnosis.json").read_text())
+    assert (found["complete"], found["incomplete_because"], found["interrupted"]) == (True, None, False)
 
 
 def test_control_c_leaves_what_is_known(
@@ -68,6 +69,8 @@ def test_control_c_leaves_what_is_known(
     monkeypatch.setattr("twin.diagnose.judge", stop)
     found = stopped(file, out)
     assert found["statement"].startswith("Interrupted at position: one cause (40 %)")
+    assert (found["complete"], found["incomplete_because"]) == (False, "interrupted at position: one cause (40 %)")
+    assert "the verdict stands for no answer" in found["data_quality"][-1]["handled"]
     assert (found["causes"], found["gap"]["after"], found["interrupted"]) == ([], None, True)
     assert found["gap"]["before"] == pytest.approx(0.14, rel=0.2)
     assert stale_in(out) == ["notes.txt"]

@@ -70,6 +70,7 @@ def test_a_strangers_csv_in_its_own_units(tmp_path: Path, capsys: pytest.Capture
         (["absent.csv", "--out", "m.toml"], 2, "absent.csv"),
         (["x.csv", "--out", "m.json"], 2, "ends in .toml"),
         (["still.csv", "--out", "m.toml"], 2, "command never changes"),
+        (["stuck.csv", "--out", "m.toml"], 2, "position never leaves its noise"),
     ],
 )
 def test_bad_input_is_one_sentence(
@@ -83,6 +84,8 @@ def test_bad_input_is_one_sentence(
     monkeypatch.chdir(tmp_path)
     rows = [f"{0.1 * i:.1f},9,9,0.{i % 7}" for i in range(100)]
     Path("still.csv").write_text("time_s,command_psi,pressure_psi,position_in\n" + "\n".join(rows) + "\n")
+    rows = [f"{0.1 * i:.1f},{5 + i % 60 // 10},0.3" for i in range(400)]
+    Path("stuck.csv").write_text("time_s,command_psi,position_in\n" + "\n".join(rows) + "\n")
     assert run(["identify", *words]) == code
     assert sentence in capsys.readouterr().err
     assert not Path("m.toml").exists()

@@ -138,3 +138,18 @@ def test_bad_input_is_one_sentence_and_exit_2(
     assert sentence in error
     assert "Traceback" not in error
     assert not list(tmp_path.rglob("run.json"))
+
+
+@pytest.mark.parametrize(("what", "kind"), [("base.csv", "file"), ("runs", "folder")])
+def test_something_that_is_there_and_no_experiment_is_said_to_be_that(
+    what: str, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "base.csv").write_text("time_s\n")
+    (tmp_path / "runs").mkdir()
+    (tmp_path / "steps").mkdir()  # a kind stays a kind
+    assert run(["sweep", what]) == 2
+    assert f"{what} is a {kind} but no experiment; sweep takes a kind (hold," in capsys.readouterr().err
+    assert run(["sweep", "steps", "--dry-run"]) == 0
+    assert run(["sweep", "steep"]) == 2
+    assert "'steep' does not exist" in capsys.readouterr().err

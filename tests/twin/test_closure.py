@@ -53,6 +53,18 @@ def test_missing_rows_are_left_out_of_both() -> None:
     assert share.value == pytest.approx(0.99, abs=0.003)
 
 
+def test_a_closed_share_is_that_of_the_errors_beside_it_and_is_there_whenever_they_are() -> None:
+    before, after = noise(1) + slow(4.0), noise(1)
+    before[:200] *= 3.0  # the worst rows, which nothing predicts
+    after[:200] = np.nan
+    found = gap(before, before, after, FLOOR, 100.0)
+    assert found.reducible_closed is not None
+    closed = 1.0 - (found.after**2 - found.noise_floor**2) / (found.before**2 - found.noise_floor**2)
+    assert found.reducible_closed.value == pytest.approx(closed, abs=1e-9)
+    quiet = np.where(np.arange(before.size) < 200, 50.0, noise(2) * 1e-3)  # nothing to close where both are known
+    assert gap(quiet, quiet, after, FLOOR, 100.0).before < gap(quiet, quiet, after, FLOOR, 100.0).noise_floor
+
+
 def test_gap_is_in_percent_of_travel_and_repeatable() -> None:
     arguments = (noise(1) + slow(4.0), noise(1) + slow(3.0), noise(1), FLOOR, 50.0)
     numbers = gap(*arguments)

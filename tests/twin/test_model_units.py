@@ -20,6 +20,22 @@ def test_every_number_and_every_effect_is_converted() -> None:
     assert metric.effects["lvdt_drift"]["rate"] == pytest.approx(25.4e-4)
 
 
+@pytest.mark.parametrize(
+    ("model", "record", "sentence"),
+    [
+        (
+            "in",
+            "percent",
+            r"position in \[in\], the recording in \[percent\].*--units 'position=percent\(0..0.5625 in\)'",
+        ),
+        ("percent", "in", r"position in \[percent\], the recording in \[in\].*identify a model from such a recording"),
+    ],
+)
+def test_percent_beside_another_unit_asks_for_the_range(model: str, record: str, sentence: str) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        in_units_of(DesignModel(position_unit=model), "psi", record)
+
+
 def test_there_and_back() -> None:
     back = in_units_of(in_units_of(DesignModel(), "bar", "cm"), "psi", "in")
     assert back.a2 == pytest.approx(5.82)

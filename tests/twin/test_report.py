@@ -16,7 +16,8 @@ from twin.report.content import cause_rows, columns, gap_marks, ranking_rows, sh
 from twin.report.figures import planes
 from twin.report.page import render, write_report
 from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
-from twin.report.words import number, percent
+from twin.report.story import story
+from twin.report.words import VERDICTS, number, percent
 from twin.statement import statement
 
 VOID = {"meta", "link", "img", "br", "hr", "input"}
@@ -101,6 +102,15 @@ def test_same_input_same_bytes(shown: Series, page: str, tmp_path: Path) -> None
     path = tmp_path / "report.html"
     write_report(diagnosis(shown), shown, path)
     assert path.read_text(encoding="utf-8") == page
+
+
+def test_a_page_of_an_unfinished_diagnosis_is_not_headed_by_a_verdict(shown: Series) -> None:
+    unfinished = replace(
+        diagnosis(shown), verdict="unexplained", incomplete="interrupted at position: one cause (40 %)"
+    )
+    for text in (render(unfinished, shown), story(unfinished)):
+        assert "No whole answer: interrupted at position: one cause (40 %)" in text
+        assert VERDICTS["unexplained"] not in text
 
 
 def test_no_gap_page_on_few_bare_rows() -> None:

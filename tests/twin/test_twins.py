@@ -15,7 +15,7 @@ from twin.choose.claims import together
 from twin.choose.decide import Decision, DecisionRules
 from twin.choose.twins import _more_usual, settled, with_usual_twins
 from twin.choose.usual import log_usual
-from twin.choose.weigh import Weights, weigh
+from twin.choose.weigh import Weights, _sets, weigh
 from twin.fit.space import Cause
 from twin.plant import Inserted, Plant
 from twin.simulate import simulate_recording
@@ -99,3 +99,14 @@ def test_a_lag_of_the_stem_and_one_of_the_sensor_add_up_in_any_order() -> None:
     assert np.array_equal(readings["both"], readings["turned"])
     for alone in ("stem", "sensor"):
         assert np.abs(readings["both"] - readings[alone]).max() > 0.005
+
+
+def test_a_set_holds_each_name_once_however_many_forms_of_it_come_near() -> None:
+    decision = settled(late(0.8), DecisionRules(), Weights())
+    near = [f for f in decision.findings.fits if f.names == ("sensor_lag",)]
+    several = replace(decision, findings=replace(decision.findings, fits=(*decision.findings.fits, *near, *near)))
+    assert weigh(several, Weights()).sets == (("additional_lag", "sensor_lag"),)
+    apart = replace(near[0], residuals=1.0001 * near[0].residuals)
+    fits = [decision.accepted, near[0], apart]
+    found = _sets(decision, fits, np.array([0.4, 0.3, 0.3]), Weights())
+    assert found == (("additional_lag", "sensor_lag"),)

@@ -142,9 +142,9 @@ def _sets(decision: Decision, fits: Sequence[Fit], odds: np.ndarray, weights: We
             if f is not accepted and len(f.names) == len(accepted.names) and others < set(f.names)
         ]
         near = [rival for o, rival in sorted(rivals, reverse=True) if o > weights.confusable * own]
-        near += [twin for twin in twins_of(accepted, name) if twin not in near]
-        if near:
-            found.append((name, *near))
+        members = dict.fromkeys([name, *near, *twins_of(accepted, name)])  # several forms of an effect are one rival
+        if len(members) > 1:
+            found.append(tuple(members))
     return tuple(found)
 
 

@@ -13,7 +13,7 @@ from control.experiment import Experiment
 from control.preview import duration_words
 from twin.choose.decide import DecisionRules
 from twin.choose.weigh import Weights
-from twin.diagnosis import EffectTest, NextExperiment
+from twin.diagnosis import Cause, EffectTest, NextExperiment
 from twin.next.coverage import best_coverage, blind_spots
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
@@ -32,6 +32,8 @@ _HELPS = 0.3
 _HINTS = 0.05
 #: What is asked of an experiment beyond what settles a dispute on average: half of the time less comes out.
 _SAFE = 1.5
+#: A cause with less than this is said to be left open, though nothing rivals it: one in ten is not there.
+_BEYOND_DOUBT = 0.9
 #: Times the noise: what named causes may leave before it is worth a word.
 _MUCH = 2.0
 
@@ -81,21 +83,39 @@ def _proposed(experiment: Experiment, why: str, said: str = "") -> Proposal:
 
 
 def _settled(result: StageResult, judgement: Judgement) -> Proposal:
-    """After causes beyond dispute; what they leave is said of the signal in which it is."""
+    """After causes without a rival: who is not beyond doubt, and what they leave, of the signal in which it is."""
     sure = min(c.probability for c in judgement.causes)
     worst = max(result.decisions, key=lambda d: d.accepted.mse)
     left = worst.accepted.mse**0.5
-    if left <= _MUCH:
-        return Proposal(
-            NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
-        )
-    signal = "pressure" if worst.findings.channel.name == "pressure" else "position"
-    why = (
-        f"No experiment is needed to name the causes (probability at least {sure:.2f}); in the {signal}, on the rows "
-        f"that they were fitted to, they leave {left:.2g} times its noise, which no candidate explains: repeat the "
-        "record to see whether that repeats."
+    much = (
+        f"in the {'pressure' if worst.findings.channel.name == 'pressure' else 'position'}, on the rows that they were "
+        f"fitted to, they leave {left:.2g} times its noise, which no candidate explains: repeat the record to see "
+        "whether that repeats."
     )
-    return Proposal(NextExperiment(why))
+    doubts = _doubts(judgement.causes)
+    if doubts:
+        return Proposal(NextExperiment(doubts + (f" And {much}" if left > _MUCH else "")))
+    if left > _MUCH:
+        return Proposal(
+            NextExperiment(f"No experiment is needed to name the causes (probability at least {sure:.2f}); {much}")
+        )
+    return Proposal(
+        NextExperiment(f"No further experiment is needed: each cause has a probability of at least {sure:.2f}.")
+    )
+
+
+def _doubts(causes: Sequence[Cause]) -> str:
+    """What is left open though nothing rivals the causes: those that may not be there; empty if none is in doubt."""
+    unsure = [f"{_plain(c.name)} ({c.probability:.2f})" for c in causes if c.probability < _BEYOND_DOUBT]
+    if not unsure:
+        return ""
+    together = math.prod(c.probability for c in causes)
+    all_of_them = f", that all {len(causes)} causes are there about {together:.2f}" if len(causes) > 1 else ""
+    return (
+        f"Likely but not beyond doubt: {', '.join(unsure)}{all_of_them}. No other known cause does as well in their "
+        "place, so no experiment of the library separates them from one: record once more, and diagnose both records "
+        "together to see whether they are named again."
+    )
 
 
 def _hint(found: Experiment, gain: float, words: Sequence[str]) -> Proposal:

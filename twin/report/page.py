@@ -19,7 +19,7 @@ from twin.report.content import (
     top_share,
 )
 from twin.report.series import Series
-from twin.report.words import VERDICTS, interval, name, number, percent
+from twin.report.words import heading, interval, name, number, percent
 
 _TEMPLATE = Path(__file__).parent / "template.html.j2"
 
@@ -39,7 +39,7 @@ def render(diagnosis: Diagnosis, series: Series) -> str:
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
     return template.render(
         d=diagnosis,
-        verdict=VERDICTS[diagnosis.verdict],
+        verdict=heading(diagnosis),
         figures=_figures(diagnosis, series),
         records=_records(series),
         causes=cause_rows(diagnosis.causes),

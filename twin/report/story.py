@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from twin.diagnosis import Bin, Diagnosis, Share
-from twin.report.words import VERDICTS, interval, name, number, percent
+from twin.report.words import heading, interval, name, number, percent
 
 
 def story(diagnosis: Diagnosis) -> str:
     """Verdict, causes, gap, where and what next, as headings and tables."""
-    parts = [f"# {VERDICTS[diagnosis.verdict]}", diagnosis.statement, _gap(diagnosis)]
+    parts = [f"# {heading(diagnosis)}", diagnosis.statement, _gap(diagnosis)]
     if diagnosis.causes:
         parts += ["## Causes", *[_cause(diagnosis, index) for index in range(len(diagnosis.causes))]]
     if diagnosis.confusable:

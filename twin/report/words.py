@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from math import floor, isfinite, log10
 
+from twin.diagnosis import Diagnosis
+
 VERDICTS = {
     "no_gap": "No gap",
     "parameter": "A design number is off",
@@ -27,6 +29,11 @@ _NAMES = {
     "repeats": "repeated commands",
     "still": "still",
 }
+
+
+def heading(diagnosis: Diagnosis) -> str:
+    """The verdict in words; of a diagnosis that did not come to its end, that it has none to be relied on."""
+    return f"No whole answer: {diagnosis.incomplete}" if diagnosis.incomplete else VERDICTS[diagnosis.verdict]
 
 
 def name(key: str) -> str:

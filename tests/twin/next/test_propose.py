@@ -62,6 +62,18 @@ def test_two_causes_without_a_set_are_in_dispute_while_the_first_is_not_sure() -
     assert "No further experiment is needed" in sure.next.why
 
 
+@pytest.mark.parametrize("many", [1, 6])
+def test_causes_that_are_not_beyond_doubt_are_left_open(many: int) -> None:
+    causes = tuple(Cause(name, "ep", 0.85) for name in ("dead_time", "creep", "stiction", "a", "b", "c")[:many])
+    why = proposed(result(*PAIR), Judgement("effects", causes, (), ())).next.why
+    assert "needed" not in why
+    assert "not beyond doubt: dead time (0.85)" in why
+    assert ("that all 6 causes are there about 0.38" in why) == (many == 6)
+    sure, second = Cause("dead_time", "ep", 0.97), Cause("creep", "actuator", 0.85)
+    why = proposed(result(*PAIR), Judgement("effects", (sure, second), (), ())).next.why
+    assert "not beyond doubt: creep (0.85), that all 2 causes are there about 0.82" in why
+
+
 def test_asks_for_a_sensor_where_no_experiment_separates() -> None:
     names = ("sensor_lag", "additional_lag")
     proposal = proposed(result(*names), judged("sensor_lag", probability=0.99, confusable=(names,)))
