@@ -66,7 +66,7 @@ def test_other_units_and_no_pressure(healthy: Recording, tmp_path: Path) -> None
     assert found["verdict"] == "no_gap"
     assert found["where"]["stage"] is None
     assert "the E/P and actuator stages cannot be separated" in said(found)
-    assert "no --design given: the defaults" in said(found)
+    assert "no --design given: identified from the record" in said(found)
 
 
 def test_missing_values_doubled_rows_and_a_hole(healthy: Recording, tmp_path: Path) -> None:
