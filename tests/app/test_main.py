@@ -26,9 +26,18 @@ main()
 """
 
 
+def run(code: list[str]) -> subprocess.CompletedProcess[str]:
+    """In a process that hears SIGINT, whatever became of it for this one: what runs in the background does not."""
+
+    def hears() -> None:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    env = {**os.environ, "CI": "true"}
+    return subprocess.run(code, capture_output=True, text=True, check=False, env=env, preexec_fn=hears)
+
+
 def interrupted_at(name: str, also: str = "", *words: str) -> subprocess.CompletedProcess[str]:
-    code = [sys.executable, "-c", _INTERRUPTED_AT, name, also, *(words or ("explain", "stiction"))]
-    return subprocess.run(code, capture_output=True, text=True, check=False, env={**os.environ, "CI": "true"})
+    return run([sys.executable, "-c", _INTERRUPTED_AT, name, also, *(words or ("explain", "stiction"))])
 
 
 @pytest.mark.parametrize("name", ["hal", "twin", "app.cli", "click", "hal.errors", "app.commands.explain", "numpy"])
@@ -49,5 +58,5 @@ def test_an_interrupt_after_the_end_is_no_traceback() -> None:
         "import atexit, os, signal, sys; sys.argv = ['lostmotion', '--version']; "
         f"atexit.register(os.kill, os.getpid(), {int(signal.SIGINT)}); from app.__main__ import main; main()"
     )
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+    done = run([sys.executable, "-c", code])
     assert (done.returncode, done.stderr) == (130, "lostmotion: interrupted\n")

@@ -88,13 +88,15 @@ _PERIOD = Parameter(
 )
 
 
+#: Instants at which a jump is looked for: a start too far off finds no way to it.
+_LOOKS = 48
 _STEP = replace(_CHANGE, name="zero", starts=(-0.005, 0.005), doc="by how much the zero jumps")
 _WHEN = Parameter(
     name="when",
     kind="fraction",
     lower=0.02,
     upper=0.98,
-    starts=tuple((0.5 + k) / 16 for k in range(16)),
+    starts=tuple(0.02 + 0.96 * (0.5 + k) / _LOOKS for k in range(_LOOKS)),
     scale=0.2,
     doc="when it jumps, fraction of all recordings",
     neutral=0.5,
@@ -114,8 +116,6 @@ _AFTER = replace(
     neutral=0.0,
     smooth=False,
 )
-#: Instants of a recording at which the jump is looked for: a start too far off finds no way to it.
-_LOOKS = 48
 
 
 def _linear(c: Coefficients, values: Sequence[float]) -> None:
