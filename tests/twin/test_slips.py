@@ -69,7 +69,8 @@ def test_numbers_start_far_off_too_unless_they_are_known_from_another_fit() -> N
     channel = position_channel([trial_of(Plant(DESIGN), staircase())[0]], SIGMA)
     space = make_space(Plant(DESIGN), number_causes(channel), channel.numbers, Scales())
     anywhere = starts_of(space)
-    assert len(anywhere) == len({tuple(z) for z in anywhere}) == 3**3 * 4  # compliance starts at its nominal only, a rate limit at three others
+    # compliance starts at its nominal only, a rate limit at three more
+    assert len(anywhere) == len({tuple(z) for z in anywhere}) == 3**3 * 4
     known = fit(channel, space, [np.full(len(space.numbers), 0.01)], rounds=1)
     [start] = starts_of(space, [known])
     assert np.array_equal(start, known.z)
