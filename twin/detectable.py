@@ -139,9 +139,9 @@ def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
         return detector.shown(Plant(changed, detector.base.inserted), others)
 
     limit = smallest_shown(shown, _FIRST_WRONG, _WRONG)
-    most = _WRONG
-    if limit > most and nominal(design, name) > _TOO_SMALL * size:  # a bound that was never met shows when it is lower
-        most = _TOO_SMALL
+    most, room = _WRONG, nominal(design, name) / size
+    if limit > most and room > _WRONG:  # a bound that was never met shows when it is lower
+        most = _TOO_SMALL * min(room, 1.0)
         limit = smallest_shown(lambda relative: shown(-relative), _FIRST_WRONG, most)
     if limit > most:
         return EffectTest(f"parameter:{name}", False, "this record does not excite it", name)
