@@ -20,8 +20,8 @@ from app.blind.page import confusion_matrix
 from app.blind.pool import read_lines
 from app.blind.score import score
 from app.blind.strength import STRATA
-from app.blind.table import fault_rows, number, rows
-from bench.blind_pages import published
+from app.blind.table import curve_rows, fault_rows, number, rows
+from bench.blind_pages import CURVE, published
 from bench.blind_readme import readme
 from bench.blind_summary import summary, table
 
@@ -91,6 +91,8 @@ def section(folder: Path, protocol: dict[str, Any], code: str) -> Iterator[str]:
     heads = ["", *(head for name in tables for head in (name, "95 % interval"))]
     what = next(iter(tables.values()))
     yield from table(heads, ([name, *(cell for of in tables.values() for cell in of[name])] for name in what))
+    yield "## What the probabilities were worth\n\nOf all causes named, also for faults below the floor.\n"
+    yield from table(CURVE, curve_rows(scores["all"]["calibration"]["curve"]))
     yield "## What was answered\n\nRows: the truth (single faults at or above the floor). Cells: answer and count.\n"
     matrix = confusion_matrix(scores["all"]["confusion"])
     yield from table(["truth", "right", "otherwise"], (_answers(t, c, matrix["said"]) for t, c in matrix["rows"]))

@@ -11,6 +11,7 @@ from app.interval import wilson
 
 HEADING = re.compile(r"^# Seed (\d+), family (\w+): (\d+) trials$", re.MULTILINE)
 CODE = re.compile(r"^Code of (\d{4}-\d\d-\d\d \d\d:\d\d) UTC;", re.MULTILINE)
+CURVE = ("probability", "causes named", "said, mean", "true", "95 % interval")
 COMMIT = re.compile(r"^Code frozen at commit `([^`]+)`", re.MULTILINE)
 
 
@@ -26,8 +27,20 @@ class Figure:
 
 
 @dataclass(frozen=True)
+class Worth:
+    """Causes named with a probability within a range: what was said in the mean, and how many of them were true."""
+
+    span: str
+    said: float
+    true: Figure
+
+
+@dataclass(frozen=True)
 class Check:
-    """A published check; `code` is when its commit was made [UTC], `figures` go by group of valves and row."""
+    """A published check; `code` is when its commit was made [UTC], `figures` go by group of valves and row.
+
+    `worth`: what its probabilities were worth, empty where the page does not say.
+    """
 
     seed: int
     family: str
@@ -35,6 +48,7 @@ class Check:
     code: str
     commit: str
     figures: Mapping[str, Mapping[str, Figure]]
+    worth: tuple[Worth, ...] = ()
 
 
 def count(hits: int, of: int) -> Figure:
@@ -76,7 +90,16 @@ def read(page: Path) -> Check:
         for place, group in enumerate(heads)
         if group and group != "95 % interval"
     }
-    return Check(int(heading[1]), heading[2], int(heading[3]), code[1], commit[1], found)
+    return Check(int(heading[1]), heading[2], int(heading[3]), code[1], commit[1], found, tuple(_worth(text)))
+
+
+def _worth(text: str) -> Iterator[Worth]:
+    """The rows of the table of probabilities, wherever it stands on the page."""
+    for heads, *rows in tables(text):
+        if tuple(heads) == CURVE:
+            for span, of, said, true, _ in rows:
+                found = figure(true)
+                yield Worth(span, float(said), found if found else count(0, int(of)))
 
 
 def published(folder: Path) -> list[Check]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from bench.blind_pages import Check, Figure, count
+from bench.blind_pages import CURVE, Check, Figure, count
+from bench.blind_probabilities import pooled, words
 
 POOL = 5  # checks that are added up: the newest ones, which have 80 valves each
 
@@ -99,10 +100,24 @@ def _pooled(checks: Sequence[Check]) -> Iterator[str]:
     yield f"Seeds {seeds}: {sum(check.trials for check in checks)} valves.\n"
     yield "**The code changed between any two of these checks**, also on what the one before had shown. So a rate"
     yield "of this table is an average over several programs, and not what the newest one does; its interval (Wilson)"
-    yield "is that of the draw alone. Means, medians and calibration errors cannot be added up from what is published"
+    yield "is that of the draw alone. Means and medians cannot be added up from what is published"
     yield "and are left out. Last column: each check by itself, oldest first.\n"
     heads = ["", *(head for group in groups for head in (group, "95 % interval")), "one by one"]
     yield from table(heads, (_pooled_row(measure, checks, groups) for measure in counted))
+    yield from _probabilities(checks)
+
+
+def _probabilities(checks: Sequence[Check]) -> Iterator[str]:
+    """What was said against what was true, over those checks whose pages have it."""
+    having = [check for check in checks if check.worth]
+    pieces = pooled(having)
+    if not pieces:
+        return
+    yield "### What their probabilities were worth\n"
+    yield f"Of the checks whose pages say it: {', '.join(str(check.seed) for check in reversed(having))}.\n"
+    rows = ([p.span, str(p.true.of), f"{p.said:.4f}", p.true.text, p.true.interval] for p in pieces)
+    yield from table(CURVE, rows)
+    yield from words(pieces)
 
 
 def _pooled_row(measure: Measure, checks: Sequence[Check], groups: Sequence[str]) -> list[str]:

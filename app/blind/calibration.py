@@ -11,6 +11,8 @@ from app.interval import bootstrap, wilson
 
 Claim = tuple[float, bool]  # probability said, and whether the cause was true
 
+_DRAWS = 1000
+_SAME = 1e-12  # errors that differ by rounding only are the same
 EDGES = (0.0, 0.3, 0.5, 0.7, 0.8, 0.9, 0.95, 1.0)
 
 
@@ -21,10 +23,33 @@ def calibration(trials: Sequence[Sequence[Claim]]) -> dict[str, Any]:
     """
     claims = [claim for trial in trials for claim in trial]
     if not claims:
-        return {"claims": 0, "ece": None, "ci95": None, "brier": None, "curve": []}
+        return {"claims": 0, "ece": None, "ci95": None, "honest": None, "brier": None, "curve": []}
     low, high = bootstrap(trials, lambda some: error([c for trial in some for c in trial]))
-    brier = float(np.mean([(p - right) ** 2 for p, right in claims]))
-    return {"claims": len(claims), "ece": error(claims), "ci95": [low, high], "brier": brier, "curve": curve(claims)}
+    return {
+        "claims": len(claims),
+        "ece": error(claims),
+        "ci95": [low, high],
+        "honest": honest(claims),
+        "brier": float(np.mean([(p - right) ** 2 for p, right in claims])),
+        "curve": curve(claims),
+    }
+
+
+def honest(claims: Sequence[Claim], seed: int = 0) -> dict[str, Any]:
+    """What the error would be by chance alone if every probability that was said were true.
+
+    The error is a mean of distances, so it is never 0 with few claims, however honest they are. `mean` and `range95` of
+    it, and `above`: how often it would be at least as large as it was found. Claims are drawn one by one, so what
+    claims of one trial have in common is not in it, and the true range is a little wider.
+    Source: Broecker, Smith, Weather and Forecasting 22 (2007) 651 (consistency resampling).
+    """
+    chance = np.random.default_rng(seed)
+    said = np.array([p for p, _ in claims])
+    drawn = chance.random((_DRAWS, said.size)) < said
+    errors = np.array([error(list(zip(said, map(bool, one), strict=True))) for one in drawn])
+    low, high = np.percentile(errors, [2.5, 97.5])
+    above = float(np.mean(errors >= error(claims) - _SAME))
+    return {"mean": float(errors.mean()), "range95": [float(low), float(high)], "above": above}
 
 
 def error(claims: Sequence[Claim]) -> float:

@@ -45,6 +45,7 @@ def _further(group: Mapping[str, Any]) -> list[Row]:
         ("  where each alone is above 1 x floor", *_rate(group["both_visible"])),
         ("at least one of two causes", *_rate(group["one_of_two"])),
         ("expected calibration error", number(calibration["ece"]), _interval(calibration["ci95"])),
+        ("  by chance, were every probability true", *_honest(calibration["honest"])),
         ("error of the size, median", *_median(sizes["error"])),
         ("  faults from 3 x floor", *_median(sizes["error_from_3"])),
         ("true size in the 95 % interval", *_rate(sizes["covered"])),
@@ -78,6 +79,24 @@ def _rate(entry: Mapping[str, Any]) -> tuple[str, str]:
 
 def _median(entry: Mapping[str, Any]) -> tuple[str, str]:
     return number(entry["median"]) + (f"  (n = {entry['of']})" if entry["of"] else ""), _interval(entry["ci95"])
+
+
+def _honest(entry: Mapping[str, Any] | None) -> tuple[str, str]:
+    """The mean and the range of the calibration error that few claims bring along; nothing for scores from before."""
+    return ("-", "") if entry is None else (number(entry["mean"]), _interval(entry["range95"]))
+
+
+def curve_rows(curve: Sequence[Mapping[str, Any]]) -> list[list[str]]:
+    """Per range of probabilities: causes named with one, what was said in the mean, how many were true, interval."""
+    return [
+        [f"{b['from']:g} to {b['to']:g}", str(b["claims"]), f"{b['said']:.4f}", *_rate(_true(b))]
+        for b in reversed(curve)
+    ]
+
+
+def _true(piece: Mapping[str, Any]) -> dict[str, Any]:
+    hits = round(piece["right"] * piece["claims"])
+    return {"hits": hits, "of": piece["claims"], "share": piece["right"], "ci95": piece["ci95"]}
 
 
 def _interval(pair: Sequence[float] | None) -> str:

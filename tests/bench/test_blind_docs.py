@@ -12,7 +12,8 @@ import pytest
 
 from app.interval import wilson
 from bench.blind_docs import HOUSE, committed, publish, renewed, with_table
-from bench.blind_pages import Figure, count, figure, published, read
+from bench.blind_pages import Check, Figure, Worth, count, figure, published, read
+from bench.blind_probabilities import pooled, words
 from bench.blind_readme import newest_plant
 from bench.blind_summary import MEASURES, POOL
 from tests.app.blind.lines import some_lines
@@ -144,6 +145,24 @@ def test_a_new_check_gets_a_page_and_the_first_row(house, tmp_path) -> None:
     assert rows[0].startswith(start)
     assert rows[1].startswith(f"| [{CHECKS[0].seed}]")
     assert "| 1 % or less | **missed**: 1 of 2, 50 % (9 to 91 %) |" in new["README.md"]
+
+
+def test_a_page_says_what_its_probabilities_were_worth(house, tmp_path) -> None:
+    check = read(publish(finished(tmp_path / "check"), house, when=lambda commit: "2030-01-02 03:04"))
+    claims = [claim for line in some_lines() if "error" not in line for claim in line["mark"]["claims"]]
+    assert sum(piece.true.of for piece in check.worth) == len(claims)
+    assert sum(piece.true.hits for piece in check.worth) == sum(right for _, right in claims)
+
+
+def test_probabilities_of_several_checks_are_added_up() -> None:
+    one = Check(
+        1, "both", 2, "", "", {}, (Worth("0.9 to 0.95", 0.9, count(8, 10)), Worth("0.5 to 0.7", 0.6, count(1, 2)))
+    )
+    other = Check(2, "both", 2, "", "", {}, (Worth("0.9 to 0.95", 0.93, count(5, 5)),))
+    high, low = pooled([one, other])
+    assert (high.span, high.true, low.true) == ("0.9 to 0.95", count(13, 15), count(1, 2))
+    assert high.said == pytest.approx((0.9 * 10 + 0.93 * 5) / 15)
+    assert "over 17 causes named" in " ".join(words([high, low]))
 
 
 def test_a_published_check_is_not_written_again(house, tmp_path) -> None:

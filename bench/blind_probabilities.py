@@ -1,0 +1,31 @@
+"""What the probabilities of several blind checks were worth together, and what chance alone would have made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from app.blind.calibration import error, honest
+from bench.blind_pages import Check, Worth, count
+
+
+def pooled(checks: Sequence[Check]) -> list[Worth]:
+    """The ranges of all checks that have them, added up, the highest probability first."""
+    pieces = [piece for check in checks for piece in check.worth]
+    spans = sorted({piece.span for piece in pieces}, key=lambda span: float(span.split()[0]), reverse=True)
+    return [_sum([piece for piece in pieces if piece.span == span]) for span in spans]
+
+
+def _sum(pieces: Sequence[Worth]) -> Worth:
+    of = sum(piece.true.of for piece in pieces)
+    said = sum(piece.said * piece.true.of for piece in pieces) / of
+    return Worth(pieces[0].span, said, count(sum(piece.true.hits for piece in pieces), of))
+
+
+def words(pieces: Sequence[Worth]) -> Iterator[str]:
+    """The calibration error of the sum beside that of probabilities that are all true."""
+    claims = [(piece.said, k < piece.true.hits) for piece in pieces for k in range(piece.true.of)]
+    chance = honest(claims)
+    low, high = chance["range95"]
+    yield f"Calibration error over {len(claims)} causes named: {error(claims):.3f}. Were every probability true,"
+    yield f"chance alone would make it {chance['mean']:.3f} in the mean, {low:.3f} to {high:.3f} in 95 of 100 draws,"
+    yield f"and at least as large as found in {100.0 * chance['above']:.0f} of 100.\n"
