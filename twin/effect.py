@@ -172,15 +172,17 @@ class Coefficients:
 
 
 Apply = Callable[[Coefficients, Sequence[float]], None]
-StartsFor = Callable[[FloatArray, FloatArray, Scales], Sequence[tuple[float, ...]]]
+#: Times and readings of each recording.
+Readings = Sequence[tuple[FloatArray, FloatArray]]
+StartsFor = Callable[[Readings, Scales], Sequence[tuple[float, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
     """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units.
 
-    `starts_for(time_s, reading, scales)` gives the values (in record units) that a fit to this record tries first,
-    where the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
+    `starts_for(readings, scales)` gives the values (in record units) that a fit to these recordings tries first, where
+    the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
     recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
     doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What is `described`

@@ -35,6 +35,8 @@ IDLE = 1.03
 HARDLY = 1.1
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
+#: Of the noise; a pressure that is off by more has a cause, where one explains it to its noise.
+EXPLAINED = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,9 +157,15 @@ def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
     """Causes of the converter for which the measured pressure speaks, whether or not they reach the stem.
 
     A supply that gives too little for the last tenth of the range moves nothing where the stem is at its stop by then.
+    What is explained to its noise may be less than clear.
     """
     pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
-    return tuple(name for d in pressure if d.findings.none.mse > CLEAR**2 * d.floor for name in d.names)
+    return tuple(name for d in pressure if d.findings.none.mse > _shows(d) ** 2 * d.floor for name in d.names)
+
+
+def _shows(decision: Decision) -> float:
+    """Of the noise, by how much a pressure has to be off to show a cause by itself."""
+    return EXPLAINED if decision.exact else CLEAR
 
 
 def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:

@@ -18,7 +18,8 @@ from twin.choose.trim import dropped, trimmed
 from twin.choose.weigh import Weights, weigh
 from twin.diagnosis import Cause as Named
 from twin.effect import Scales
-from twin.fit.space import Cause, make_space
+from twin.fit.fitting import Fit
+from twin.fit.space import Cause, Space, make_space
 from twin.gap import GapParts, idle_cause
 from twin.plant import Inserted, Plant
 from twin.stages import StageResult
@@ -144,11 +145,40 @@ def test_an_effect_that_spares_the_numbers_nothing_and_explains_no_more_is_no_ca
     lag = effect_causes(findings.channel)[0]
     space = make_space(findings.retuned.space.base, (lag,), findings.retuned.space.numbers, Scales())
     room = np.zeros(len(space.unknowns) - len(space.numbers))
-    idle = replace(findings.retuned, space=space, z=np.concatenate([findings.retuned.z, room]), mse=two.mse)
+    idle = _sure(replace(findings.retuned, space=space, z=np.concatenate([findings.retuned.z, room]), mse=two.mse))
     better = replace(findings, fits=(replace(two, prior=1e3), idle))  # by the evidence alone the effect would win
     assert plainer(better, idle, rules).names == two.names
     works = replace(idle, mse=two.mse - 1.0)
     assert plainer(replace(better, fits=(better.fits[0], works)), works, rules) is works
+
+
+def test_an_effect_that_spares_the_numbers_takes_the_place_of_an_idle_one() -> None:
+    """A gain of an unmeasured pressure moves three numbers at once; another effect only brings them along."""
+    findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
+    two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
+    lag, other = (c for c in effect_causes(findings.channel) if (c.name, c.form and c.form.name) in LAG_AND_GAIN)
+    idle, sparing = (
+        replace(findings.retuned, space=space, z=np.concatenate([share * findings.retuned.z, np.ones(1)]), mse=two.mse)
+        for space, share in ((_with(findings.retuned, lag), 1.0), (_with(findings.retuned, other), 0.0))
+    )
+    idle, sparing = _sure(idle), _sure(sparing)
+    better = replace(findings, fits=(replace(two, prior=1e3), idle, sparing))
+    assert plainer(better, idle, rules) is sparing
+    for worse in (replace(sparing, prior=1e6), replace(sparing, mse=two.mse + 1.0), replace(sparing, z=idle.z)):
+        assert plainer(replace(better, fits=(*better.fits[:2], worse)), idle, rules).names == two.names
+
+
+LAG_AND_GAIN = {("additional_lag", "behind_stem"), ("lvdt_calibration", "gain")}
+
+
+def _with(fit: Fit, cause: Cause) -> Space:
+    """The space of an effect of one number beside the numbers of `fit`."""
+    return make_space(fit.space.base, (cause,), fit.space.numbers, Scales())
+
+
+def _sure(fit: Fit) -> Fit:
+    """With all of its unknowns known well."""
+    return replace(fit, normal=1e9 * np.eye(fit.z.size))
 
 
 def test_where_one_number_is_wrong_a_further_one_is_ten_times_as_rare() -> None:

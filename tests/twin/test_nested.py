@@ -5,14 +5,15 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
+import pytest
 
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
-from twin.choose.nested import nested
+from twin.choose.nested import beyond_retuning, cost, nested
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
-from twin.fit.space import Cause, make_space
+from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
 from twin.plant import Inserted, Plant
 
 
@@ -51,3 +52,33 @@ def test_forms_whose_numbers_only_bear_the_same_name_are_left_where_they_ended()
     assert end.mse < 0.9 * spot.mse
     assert looked_at(channel, end, spot)[1] is spot
     assert looked_at(channel, spot)[0] is spot
+
+
+def test_an_effect_that_costs_more_than_retuning_got_stuck() -> None:
+    """Numbers that went far off at once hide a gain that would explain all with the numbers as they are."""
+    channel = channel_of("lvdt_calibration", "gain", 0.03)
+    numbers = channel.numbers
+    space = make_space(Plant(DESIGN), (), numbers, Scales(), ACCUSED_SPREAD)
+    retuned = fit(channel, space, [np.zeros(len(numbers))], rounds=20)
+    gain = effect("lvdt_calibration")
+    cause = Cause(gain.name, gain, gain.form("gain"))
+    within = make_space(Plant(DESIGN), (cause,), numbers, Scales())
+    astray = np.array([*(0.1 * (-1.0) ** k for k in range(len(numbers))), 0.0])
+    stuck = fit(channel, within, [astray], rounds=0)
+    assert cost(channel, stuck) > 2.0 * retuned.mse * channel.rows
+    with ThreadPoolExecutor(1) as pool:
+        [again] = beyond_retuning(channel, [stuck], retuned, 6, pool)
+        [same] = beyond_retuning(channel, [again], retuned, 6, pool)
+    assert again.mse < 1.1 and again.values()[-1] == pytest.approx(0.03, abs=5e-4)
+    assert again.prior < 0.5  # the numbers are where they were
+    assert same is again
+
+
+def test_a_number_is_never_fitted_again_from_the_retuned_ones() -> None:
+    channel = channel_of("lvdt_calibration", "gain", 0.03)
+    space = make_space(Plant(DESIGN), (), channel.numbers, Scales(), ACCUSED_SPREAD)
+    retuned = fit(channel, space, [np.zeros(len(channel.numbers))], rounds=20)
+    number = make_space(Plant(DESIGN), (Cause("parameter:tau"),), ("tau",), Scales())
+    one = fit(channel, number, [np.zeros(1)], rounds=0)
+    with ThreadPoolExecutor(1) as pool:
+        assert beyond_retuning(channel, [one], retuned, 6, pool) == [one]

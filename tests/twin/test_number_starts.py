@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record
+from tests.twin.trials import SIGMA, trial_of
 from twin.case import make_case
-from twin.fit.channel import chain_channel
+from twin.catalog import effect
+from twin.effect import Scales
+from twin.fit.channel import chain_channel, position_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
-from twin.plant import Plant
+from twin.plant import Inserted, Plant
 
 
 @pytest.mark.parametrize("share", [0.35, 0.25])
@@ -25,3 +29,20 @@ def test_a_rate_limit_that_the_design_never_meets_is_found(share: float) -> None
     space = make_space(case.base, [Cause("parameter:rate_limit")], ["rate_limit"], case.scales)
     found = fit(channel, space, starts_of(space))
     assert found.values()[0] == pytest.approx(true.rate_limit, rel=0.03)
+
+
+@pytest.mark.parametrize("missing", [0.11, 0.17, 0.265, 0.32])
+def test_a_stop_that_few_levels_pass_is_found(missing: float) -> None:
+    """A start beyond what the record reached does nothing, and one far within it costs more than that."""
+    stop = effect("reduced_travel")
+    true = Plant(DesignModel(), (Inserted(stop.name, stop.form("upper_stop"), (missing,)),))
+    highest = DesignModel().a1 + (1.019 - missing) * DesignModel().travel / DesignModel().compliance
+    levels = np.array([7.0, 9.0, 6.0, highest, 5.5, 8.8, 6.5, 8.5])
+    trial, _ = trial_of(true, np.repeat(levels, 250))
+    channel = position_channel([trial], SIGMA)
+    space = make_space(
+        Plant(DesignModel()), (Cause(stop.name, stop, stop.form("upper_stop")),), channel.numbers, Scales()
+    )
+    found = fit(channel, space, starts_of(space, (), channel.recordings), rounds=6)
+    assert found.values()[-1] == pytest.approx(missing, abs=2e-3)
+    assert found.mse < 1.1

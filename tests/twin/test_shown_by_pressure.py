@@ -52,16 +52,18 @@ def test_it_is_named_beside_what_the_readings_showed_too() -> None:
 
 
 def test_the_pressure_shows_what_is_accepted_for_far_more_than_its_noise() -> None:
-    def decision(name: str, level: float, explained: bool = True) -> Any:
+    def decision(name: str, level: float, explained: bool = True, exact: bool = False) -> Any:
         none = SimpleNamespace(mse=level)
         findings = SimpleNamespace(channel=SimpleNamespace(name=name), none=none)
-        return SimpleNamespace(findings=findings, explained=explained, floor=1.0, names=("ep_deadband",))
+        return SimpleNamespace(findings=findings, explained=explained, floor=1.0, names=("ep_deadband",), exact=exact)
 
     def shown(*decisions: Any) -> tuple[str, ...]:
         return shown_by_pressure(SimpleNamespace(decisions=decisions))  # type: ignore[arg-type]
 
     assert shown(decision("pressure", 9.0), decision("position", 90.0)) == ("ep_deadband",)
-    assert shown(decision("pressure", 4.0)) == ()
+    assert shown(decision("pressure", 5.5)) == ()
+    assert shown(decision("pressure", 5.5, exact=True)) == ("ep_deadband",)  # nothing is left of it
+    assert shown(decision("pressure", 3.5, exact=True)) == ()
     assert shown(decision("pressure", 9.0, explained=False)) == ()
     assert shown(decision("chain", 9.0)) == ()
 

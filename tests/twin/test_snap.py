@@ -96,7 +96,7 @@ def test_folds_drawn_at_random_are_found(form: str) -> None:
         case = make_case([record], DESIGN)
         channel = position_channel(driven_about(case.base, case), case.sigma_y)
         space = make_space(case.base, (Cause(spring.name, spring, spring.form(form)),), channel.numbers, case.scales)
-        rough = fit(channel, space, starts_of(space, [], record), rounds=6)
+        rough = fit(channel, space, starts_of(space, [], [record]), rounds=6)
         left.append(fit(channel, space, [rough.z]).mse)
     assert sum(mse < 1.5 for mse in left) >= 10, np.round(left, 2)
 

@@ -33,3 +33,10 @@ def test_a_late_sensor_does_not_bend_the_converter_whose_pressure_was_measured()
 def test_a_record_that_rests_at_both_stops_gives_the_travel() -> None:
     found = tuned_to([a_record(Plant(DesignModel()), n=2400)], DesignModel(travel=0.6))
     assert found.travel == pytest.approx(0.5625, rel=0.003)
+
+
+def test_a_valve_with_hardly_any_backlash_is_found_from_a_design_with_one() -> None:
+    plain = replace(DesignModel(), a1=7.31, a2=7.29, compliance=0.1)
+    found = tuned_to([a_record(Plant(plain))], DesignModel())
+    assert found.deadband == pytest.approx(0.02, abs=0.006)
+    assert found.compliance == pytest.approx(0.1, rel=0.01)

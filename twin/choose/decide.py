@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.claims import size_of
+from twin.choose.claims import hollow, size_of
 from twin.choose.findings import Findings
 from twin.choose.idle import idle
 from twin.choose.reform import bent_by, lays_open
@@ -132,21 +132,34 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
 
     So is whatever it does better than the healthy machine would.
     Several numbers are no plainer than one effect: they have to have the better evidence too, unless the effect is
-    idle beside the numbers that it brings along.
+    idle beside the numbers that it brings along. Its place is another's, then, that spares the numbers their moves.
     """
     if size_of(fit) > 1:
         return fit
     slack = slack_of(findings, rules)
     alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
     near = [f for f in alone if f.mse <= max(fit.mse + slack, rules.within)]
-    if not idle(findings, fit, slack):
+    spares = not idle(findings, fit, slack)
+    if spares:
         near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
     if not near:
         return fit
     least = min(near, key=lambda f: (len(f.names), -findings.score(f)))
     # a further number has to be worth as much as any further cause
     fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
-    return min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
+    least = min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
+    return least if spares or len(least.names) == 1 else _sparing(findings, fit, least, slack)
+
+
+def _sparing(findings: Findings, idler: Fit, numbers: Fit, slack: float) -> Fit:
+    """The likeliest effect that does as well as an idle one without moving the numbers, or the several `numbers`.
+
+    A gain of an unmeasured pressure moves three numbers at once, and is one cause.
+    """
+    near = [f for f in findings.fits if size_of(f) == 1 and _effects(f) and f.mse <= idler.mse + slack]
+    near = [f for f in near if findings.score(f) > findings.score(numbers) and not hollow(f, findings.phi)]
+    likely = sorted(near, key=findings.score, reverse=True)
+    return next((f for f in likely if not idle(findings, f, slack)), numbers)
 
 
 def slack_of(findings: Findings, rules: DecisionRules) -> float:

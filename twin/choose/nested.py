@@ -1,7 +1,7 @@
 """A form with the numbers of a plainer one, and more, is looked at once more where the plainer one ended.
 
 Mostly it can do all that the plainer one does. Where it leaves less there than where it had ended itself, its starts
-were too far off, and it is fitted again from there.
+were too far off, and it is fitted again from there. The plainest form of an effect is none, beside re-tuned numbers.
 """
 
 from __future__ import annotations
@@ -14,8 +14,8 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.fit.channel import Channel
-from twin.fit.fitting import Fit, fit
-from twin.fit.space import Unknown, cause_starts
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Unknown, cause_starts, make_space
 
 #: Of what a form leaves; a plainer one that leaves less than that has found what the form missed.
 _LESS = 0.99
@@ -34,6 +34,43 @@ def nested(channel: Channel, fits: Sequence[Fit], rounds: int, pool: Executor) -
         return min(one, fit(channel, one.space, better, rounds=rounds), key=lambda f: f.mse) if better else one
 
     return list(pool.map(again, fits))
+
+
+def beyond_retuning(channel: Channel, fits: Sequence[Fit], retuned: Fit, rounds: int, pool: Executor) -> list[Fit]:
+    """The fits; those of an effect fitted again that cost more than the re-tuned numbers do without any effect.
+
+    Every effect has the numbers beside it, so that none need cost more: it got stuck, with numbers moved far at once to
+    do what the effect should have done. It is fitted again from the re-tuned numbers, and from where its own unknowns
+    end alone while the numbers stay as designed.
+    """
+
+    def again(one: Fit) -> Fit:
+        numbers = _retuned_numbers(one, retuned)
+        rides = bool(_numbers(one)) and bool(one.space.numbers)  # numbers that ride along with an effect
+        if not rides or retuned.mse > _LESS * one.mse or cost(channel, one, numbers) > cost(channel, one):
+            return one
+        alone = make_space(one.space.base, one.space.causes, (), one.space.scales)
+        own = fit(channel, alone, starts_of(alone, (), channel.recordings), rounds=rounds).z
+        designed = np.concatenate([np.zeros(len(one.space.numbers)), own])
+        tried = [one, *(fit(channel, one.space, [z], rounds=2 * rounds) for z in (numbers, designed))]
+        return min(tried, key=lambda f: cost(channel, f))
+
+    return list(pool.map(again, fits))
+
+
+def cost(channel: Channel, one: Fit, z: FloatArray | None = None) -> float:
+    """What a fit minimises: squared residuals over the noise and what its prior asks, where it ended or at `z`."""
+    if z is None:
+        return one.mse * channel.rows + one.prior
+    residuals = channel.residuals(one.space.plant(z))
+    return float(residuals @ residuals + np.sum((z / one.space.spreads) ** 2))
+
+
+def _retuned_numbers(one: Fit, retuned: Fit) -> FloatArray:
+    """The re-tuned numbers in the space of `one`, its effect without a size."""
+    ended = {u.label: value for u, value in zip(retuned.space.unknowns, retuned.values(), strict=True)}
+    z = [(ended[u.label] - u.centre) / u.unit if u.label in ended else 0.0 for u in one.space.unknowns]
+    return np.clip(z, one.space.lower, one.space.upper)
 
 
 def _plainer(one: Fit, fits: Sequence[Fit]) -> Fit | None:

@@ -5,9 +5,13 @@ Without them the nearest known effect would be named for what it only resembles:
 
 from __future__ import annotations
 
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
 from twin.choose.trim import dropped
 from twin.fit.space import Cause
+
+#: Of the excess over the noise, what known causes beside something outside of the vocabulary may leave at the most
+#: without it: they take over what they can of its part, and to explain the rest is no proof of them.
+_LEAVES = 0.05
 
 
 def outside_of(decision: Decision) -> Cause | None:
@@ -16,10 +20,10 @@ def outside_of(decision: Decision) -> Cause | None:
     return next((c for c in causes if c.form is not None and c.form.outside), None)
 
 
-def inside(decision: Decision, rules: DecisionRules) -> Decision:
+def inside(decision: Decision) -> Decision:
     """The decision without what lies outside, where the known causes beside it explain the gap by themselves."""
     rival = outside_of(decision)
     smaller = None if rival is None else dropped(decision, rival.name)
-    if smaller is None or not smaller.names or smaller.rest >= rules.unexplained:
+    if smaller is None or not smaller.names or smaller.rest >= _LEAVES:
         return decision
     return smaller

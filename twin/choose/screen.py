@@ -131,7 +131,9 @@ def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:
     alone = make_space(space.base, (last,), (), space.scales)
     ended = [f for f in known if [(c.name, c.form) for c in f.space.causes] == [(last.name, last.form)]]
     options = starts_of(alone, ended) if ended else []
-    own = cause_starts(last, space.scales, dense=False) if last.form.starts_for is None else []
+    # without the record those of what jumps are no use, and those of a table too many
+    few = len(last.form.parameters) == 1 and last.form.parameters[0].smooth
+    own = cause_starts(last, space.scales, dense=False) if few or last.form.starts_for is None else []
     return options + (own if len(own) <= _MOST_STARTS or not options else [])
 
 

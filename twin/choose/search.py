@@ -15,7 +15,7 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
-from twin.choose.nested import nested
+from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import promising_pairs
 from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
 from twin.choose.score import yardstick_for
@@ -71,7 +71,7 @@ class Searcher:
         none = fit(self.channel, make_space(self.base, (), (), self.scales), [np.zeros(0)])
         space = make_space(self.base, (), self.channel.numbers, self.scales, ACCUSED_SPREAD)
         retuned = fit(self.channel, space, starts_of(space), rounds=20)
-        level = self._singles()
+        level = self._singles(retuned)
         slips = number_causes(self.channel)
         found = [*level, *several_slips(slips, none, retuned, self._fit_from, self.rules.scant)]
         self.origins[:] = [none, retuned]
@@ -100,13 +100,14 @@ class Searcher:
             return True
         return self._likely(pairs)[0].mse - 1.0 < self.rules.scant * (none.mse - 1.0)
 
-    def _singles(self) -> list[Fit]:
+    def _singles(self, retuned: Fit) -> list[Fit]:
         numbers = number_causes(self.channel)
         causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
         fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
         with ThreadPoolExecutor(self.rules.threads) as pool:
             fits = nested(self.channel, fits, self.rules.rounds, pool)
+            fits = beyond_retuning(self.channel, fits, retuned, self.rules.rounds, pool)
         self.tried[:] = [f for f in fits if len(f.names) == 1]
         return self._polished(best_forms(fits, self.channel.use))
 
@@ -222,7 +223,7 @@ class Searcher:
 
         def one(causes: tuple[Cause, ...]) -> Fit:
             space = make_space(self.base, causes, self._numbers(causes), self.scales)
-            return fit(self.channel, space, starts_of(space, known, self.channel.trials[0].recording), rounds=rounds)
+            return fit(self.channel, space, starts_of(space, known, self.channel.recordings), rounds=rounds)
 
         with ThreadPoolExecutor(self.rules.threads) as pool:
             fits = []

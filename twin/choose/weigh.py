@@ -89,8 +89,8 @@ def _comparable(decision: Decision) -> list[Fit]:
     """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed, and
     none whose effect has no size, since it is its numbers that explain the gap.
 
-    Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far; and where
-    nothing else was, only if they do more than the numbers that they bring along.
+    Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far. Where nothing
+    else was, or an effect that spares the numbers, only if they do more than the numbers that they bring along.
     """
     accepted = decision.accepted
     size = size_of(accepted)
@@ -98,8 +98,8 @@ def _comparable(decision: Decision) -> list[Fit]:
     fits = [f for f in everything if size_of(f) <= size and f is not accepted and not hollow(f, decision.findings.phi)]
     fits = [f for f in fits if not _adds_nothing(decision, f, everything)]
     fits = [f for f in fits if not _leans_on(f, accepted)]
-    if accepted.names and not _effects(accepted):
-        slack = slack_of(decision.findings, DecisionRules())
+    slack = slack_of(decision.findings, DecisionRules())
+    if accepted.names and not (_effects(accepted) and idle(decision.findings, accepted, slack)):
         fits = [f for f in fits if not _effects(f) or not idle(decision.findings, f, slack)]
     return [*fits, accepted]
 

@@ -53,8 +53,13 @@ def _orifice(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_SQUARED_S + 1] += values[1] * c.valve[V_TAU_OPEN_S] / c.design.rate_limit
 
 
+def _orifice_alike(c: Coefficients, values: Sequence[float]) -> None:
+    _orifice(c, (values[0], values[0]))
+
+
 def _throttled(way: str) -> Parameter:
-    doc = f"drag with the square of the speed {way}, at the design's highest speed, over that with the speed"
+    how = way.replace("_", " ")
+    doc = f"drag with the square of the speed {how}, at the design's highest speed, over that with the speed"
     return replace(_parameter(way, doc), lower=0.0, upper=9.0, starts=(0.1, 1.0), scale=0.5)
 
 
@@ -62,6 +67,8 @@ def _drag(way: str) -> Parameter:
     doc = f"what drag adds to the time constant {way}, as a share of it, as long as no stop limits the pull"
     return replace(_parameter(way, doc), starts=(-0.3, -0.03, 0.03, 0.3), scale=0.3)
 
+
+_ALIKE = "a damping that grows with the speed, the same both ways"
 
 _ASYMMETRY = _parameter(
     "asymmetry", "half the difference of the time constants over their mean, positive = closes slowly"
@@ -81,6 +88,8 @@ EFFECT = Effect(
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
         Form("orifice_each_way", (_throttled("closing"), _throttled("opening")), _orifice),
+        # what holds the stem alike both ways is no asymmetry
+        Form("orifice_alike", (_throttled("both_ways"),), _orifice_alike, outside=_ALIKE),
     ),
     absorbs=("tau",),
 )

@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
 from twin.slots import (
     KNOTS,
     S_CYCLE_COS,
@@ -178,8 +178,9 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
     _step(c, values[0], values[1] - (c.place.within_s if c.place is not None else 0.0))
 
 
-def _instants(time_s: FloatArray, _reading: FloatArray, scales: Scales) -> list[tuple[float, ...]]:
-    """All along the recording, up and down."""
+def _instants(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+    """All along the first recording, up and down."""
+    time_s, _ = readings[0]
     size, whole_s = 0.005 * scales.position, float(time_s[-1] - time_s[0])
     return [(zero, (0.5 + k) / _LOOKS * whole_s) for k in range(_LOOKS) for zero in (size, -size)]
 

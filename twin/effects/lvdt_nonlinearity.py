@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
 from twin.slots import (
     S_AT_OPEN,
     S_BOW,
@@ -146,7 +145,7 @@ def _table(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_TABLE : S_TABLE + TABLE] = values
 
 
-def _uneven(_time_s: FloatArray, _reading: FloatArray, _scales: Scales) -> list[tuple[float, ...]]:
+def _uneven(_readings: Readings, _scales: Scales) -> list[tuple[float, ...]]:
     """Every second entry too high: from there a least squares finds all of them."""
     return [tuple(0.005 if k % 2 == odd else -0.005 for k in range(TABLE)) for odd in (0, 1)]
 

@@ -6,9 +6,35 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
 from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+
+_ANYWHERE = (-0.01, 0.005, 0.04, 0.15, 0.35)
+_TRAVEL_IN = DesignModel().travel  # of the valve that scales refer to
+#: Of all readings, those beyond which noise and false ones are.
+_BEYOND = 0.002
+
+
+def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
+    """Just within the furthest that was read, and anywhere.
+
+    A stop beyond that does nothing, and for one far within it all else bends to make up.
+    """
+    read = np.concatenate([reading[np.isfinite(reading)] for _, reading in readings])
+    share = np.quantile(read, 1.0 - _BEYOND if closed else _BEYOND) / (_TRAVEL_IN * scales.position)
+    furthest = 1.0 - share if closed else share
+    near = [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
+    return [*((value,) for value in near), *((value,) for value in _ANYWHERE)]
+
+
+def _closed(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+    return _reached(readings, scales, closed=True)
+
+
+def _open(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+    return _reached(readings, scales, closed=False)
 
 
 def _missing(doc: str) -> tuple[Parameter]:
@@ -18,7 +44,7 @@ def _missing(doc: str) -> tuple[Parameter]:
             kind="fraction",
             lower=-0.2,
             upper=0.8,
-            starts=(-0.01, 0.005, 0.04, 0.15, 0.35),
+            starts=_ANYWHERE,
             scale=0.1,
             doc=doc,
         ),
@@ -83,10 +109,10 @@ EFFECT = Effect(
     "so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is give times the design's",
     source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
     forms=(
-        Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper),
-        Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower),
-        Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit),
-        Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit),
+        Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper, _closed),
+        Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower, _open),
+        Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit, _closed),
+        Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit, _open),
         Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
         Form("lower_seat", _seat("fraction of travel within which the open end's seat is pressed in"), _lower_seat),
     ),

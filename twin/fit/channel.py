@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.chain import chain_response, takes_air
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
@@ -73,6 +73,11 @@ class Channel:
     numbers: tuple[str, ...]
     stages: tuple[str, ...]
     half: float = 0.0
+
+    @property
+    def recordings(self) -> tuple[Recording, ...]:
+        """The recordings of its trials."""
+        return tuple(trial.recording for trial in self.trials)
 
     def prediction(self, plant: Plant) -> FloatArray:
         """Predicted signal over all trials, in its own unit."""

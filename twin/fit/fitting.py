@@ -113,18 +113,18 @@ def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray
     return Fit(space, best.z, float(data @ data) / max(rows, 1.0), prior, data, best.normal, used)
 
 
-def starts_of(space: Space, known: Sequence[Fit] = (), record: Recording | None = None) -> list[FloatArray]:
+def starts_of(space: Space, known: Sequence[Fit] = (), records: Sequence[Recording] = ()) -> list[FloatArray]:
     """Start vectors of a space: design numbers at their nominals, effects at each of their starts.
 
     Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
-    the design numbers start as in the first of them. A form may read its starts from the `record`.
+    the design numbers start as in the first of them. A form may read its starts from the `records`.
     """
     heads = _number_starts(space, known[0].space.numbers if known else ())
     for cause in space.causes:
         if cause.form is None:
             continue
         block = next((b for f in known if (b := _known_block(f, cause.name, cause.form.name)) is not None), None)
-        options = cause_starts(cause, space.scales, record) if block is None else [block]
+        options = cause_starts(cause, space.scales, records) if block is None else [block]
         heads = [np.concatenate([head, option]) for head in heads for option in options]
     if known:
         for head in heads:

@@ -120,14 +120,16 @@ def make_space(
     return Space(base, tuple(causes), tuple(kept), tuple(unknowns), scales)
 
 
-#: By how much of itself a number may be too small at most; a short lag may be ten times as long.
+#: By how much of itself a number may be too large at most: a valve may have hardly any backlash.
+_LOWEST = {"deadband": 0.999}
+#: And too small; a short lag may be ten times as long.
 _HIGHEST = {"offset": 1.0, "tau": 9.0, "ep_tau": 9.0}
 
 
 def _number(design: DesignModel, name: str, spread: float) -> Unknown:
     centre = nominal(design, name)
     size = reference(design, name)
-    lowest = -0.9 * centre / size if name != "offset" else -1.0
+    lowest = -_LOWEST.get(name, 0.9) * centre / size if name != "offset" else -1.0
     highest = _HIGHEST.get(name, 4.0)
     return Unknown(name, centre, size, lowest, highest, spread, 1e-3)
 
@@ -144,14 +146,14 @@ def _form_unknowns(cause: str, form: Form, scales: Scales, present: Sequence[flo
 
 
 def cause_starts(
-    cause: Cause, scales: Scales = REFERENCE, record: Recording | None = None, dense: bool = True
+    cause: Cause, scales: Scales = REFERENCE, records: Sequence[Recording] = (), dense: bool = True
 ) -> list[FloatArray]:
     """Start vectors of a cause's own unknowns in z; see `form_starts`.
 
     What the design already has also starts with each of its parameters halved, and larger by half, in turn.
     """
     assert cause.form is not None
-    starts = form_starts(cause.form, scales, record, dense)
+    starts = form_starts(cause.form, scales, records, dense)
     if not cause.present:
         return starts
     here = _in_z(cause.form, cause.present, scales)
@@ -161,15 +163,15 @@ def cause_starts(
 
 
 def form_starts(
-    form: Form, scales: Scales = REFERENCE, record: Recording | None = None, dense: bool = True
+    form: Form, scales: Scales = REFERENCE, records: Sequence[Recording] = (), dense: bool = True
 ) -> list[FloatArray]:
     """Start vectors of a form's own unknowns in z: every combination of its parameters' starts.
 
     A parameter to which the response jumps is started densely, if `dense`: its valleys are narrow. A form that reads
-    its starts from the `record` is asked first.
+    its starts from the `records` is asked first.
     """
-    if form.starts_for is not None and record is not None:
-        own = form.starts_for(record.time_s, record.position, scales)
+    if form.starts_for is not None and records:
+        own = form.starts_for([(r.time_s, r.position) for r in records], scales)
         if own:
             return [_in_z(form, values, scales) for values in own]
     starts: list[list[float]] = [[]]
