@@ -65,6 +65,15 @@ def in_vain(soon: Belief, mark: tuple[float, float, float], pushes: int, late: b
     return abs(pushes) > 3 and went_psi > visible_psi and went_in < 0.3 * soon.compliance * went_psi
 
 
+def is_beyond(soon: Belief, found: Belief, grip_psi: float, surely: float) -> bool:
+    """Whether the pressure is beyond an edge as it was `found`, by more than a grip, noise and the doubt of that edge,
+    and the play output has not come along."""
+    rest_psi = soon.inside.w / soon.compliance
+    closing_psi = soon.inside.p - found.inside.a1 - rest_psi - surely * found.edge_doubt_psi(1)
+    opening_psi = found.inside.a2 + rest_psi - soon.inside.p - surely * found.edge_doubt_psi(-1)
+    return max(closing_psi, opening_psi) > max(grip_psi, 7.0 * soon.noise_psi)
+
+
 def way_of_stroke(soon: Belief, off_in: float, room_in: float) -> int:
     """The way (+1 closing) of a stroke that corrects a miss of `off_in`: it ends on the opposite edge, which should be
     the one known better, and needs `room_in` before the end stop, or the plate would not let go on the way back."""

@@ -7,10 +7,11 @@ from dataclasses import dataclass, field, replace
 from control.aims import parked_psi, stop_psi
 from control.controller import Law, Seen
 from control.exact import lag
+from control.grip import Grip
 from control.lateness import Lateness
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
-from control.resting import Resting, in_vain, way_of_stroke
+from control.resting import Resting, in_vain, is_beyond, way_of_stroke
 
 GIVEN_UP = 99  # turns after which a target is left alone
 
@@ -21,7 +22,7 @@ class BrakeState:
     it has not changed [s]; the belief when the edges were last known well; whether the valve sticks; how often it has
     been turned back or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how
     long the drive has lasted [s], and from where [in]; edge [psi], play output [in] and doubt of the edge [psi] when
-    the pushing began; what the readings say of the rest since the last drive; how late they are."""
+    the pushing began; what the readings say of the rest since the last drive; how late they are; whether it slides."""
 
     belief: Belief
     target_in: float
@@ -38,6 +39,7 @@ class BrakeState:
     mark: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rest: Resting = field(default_factory=Resting)
     late: Lateness = field(default_factory=Lateness)
+    grip: Grip = field(default_factory=Grip)
 
 
 @dataclass(frozen=True)
@@ -79,9 +81,10 @@ class Brake(Law[BrakeState]):
         keep, soon = self._filter.track(state.belief, seen, dt_s, state.late)
         fresh, before_psi = abs(target_in - state.target_in) > 1e-4, state.aim_psi
         state = replace(state, belief=keep, target_in=target_in)
-        state = replace(state, turns=0, pushes=0, rest=Resting()) if fresh else state
+        state = replace(state, turns=0, pushes=0, rest=Resting(), grip=Grip()) if fresh else state
         rest = state.rest.read(*(place_in - target_in for place_in in (seen.position_in, soon.inside.x, soon.inside.w)))
-        state, soon = self._gripped(replace(state, rest=Resting() if state.drive else rest), soon)
+        grip = state.grip.read(seen, soon, (target_in, before_psi), self.design, dt_s)
+        state, soon = self._gripped(replace(state, rest=Resting() if state.drive else rest, grip=grip), soon)
         late = state.late.read(self._filter.observer(soon), seen.position_in, seen.pressure_psi, dt_s)
         drive = self._begun(state, soon, fresh)
         if drive and not state.drive:
@@ -90,9 +93,10 @@ class Brake(Law[BrakeState]):
         after = self._driving(state, soon, drive, fresh, dt_s) if drive else self._settling(state, soon)
         quiet_s = state.quiet_s + dt_s if after.aim_psi == before_psi else 0.0
         driven_s = state.driven_s + dt_s if after.drive else 0.0
+        grip = after.grip.driven(after.drive, after.drive * (soon.inside.w - target_in))
         calm = after.turns > 2 and not (after.drive or after.sticks)  # beyond the aim, then, costs more than it gains
         command_psi = self._command_psi(soon.inside, after.aim_psi, dt_s, calm)
-        return replace(after, quiet_s=quiet_s, driven_s=driven_s), command_psi
+        return replace(after, quiet_s=quiet_s, driven_s=driven_s, grip=grip), command_psi
 
     def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
@@ -104,7 +108,8 @@ class Brake(Law[BrakeState]):
         after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False, from_in=from_in)
         still = abs(soon.inside.x - from_in) < 2.0 * self.again_in
         if stroke and state.driven_s > self.stroke_s and still:  # what it seemed to teach is forgotten
-            return replace(after, drive=0, turns=GIVEN_UP, belief=_with_edges(state.belief, state.found))
+            belief = state.belief.with_numbers(state.found) if state.found else state.belief
+            return replace(after, drive=0, turns=GIVEN_UP, belief=belief)
         return replace(after, found=soon if not drive else state.found if stroke else None, rest=Resting())
 
     def _settling(self, state: BrakeState, soon: Belief) -> BrakeState:
@@ -142,15 +147,14 @@ class Brake(Law[BrakeState]):
         are known better than before."""
         if state.sticks or state.drive or state.found is None:
             return state, soon
-        rest_psi, was = soon.inside.w / soon.compliance, state.found
-        closing_psi = soon.inside.p - was.inside.a1 - rest_psi - self.surely * was.edge_doubt_psi(1)
-        opening_psi = was.inside.a2 + rest_psi - soon.inside.p - self.surely * was.edge_doubt_psi(-1)
-        enough_psi = max(self.grip_psi, 7.0 * soon.noise_psi)
+        was, late = state.found, state.late.known_s > 0.0
+        grip = Grip() if late or soon.inside.line.ticks else state.grip  # between ticks nothing is seen
         shown = state.rest.swung(soon.noise_in) or state.rest.stays(soon, was, state.target_in, self.surely)
-        vain = in_vain(soon, state.mark, state.pushes, state.late.known_s > 0.0)
-        if shown or vain or max(closing_psi, opening_psi) > enough_psi:
-            belief = _with_edges(state.belief, was)
-            return replace(state, sticks=True, turns=0, belief=belief), _with_edges(soon, was)
+        vain = in_vain(soon, state.mark, state.pushes, late) or is_beyond(soon, was, self.grip_psi, self.surely)
+        if grip.stays(soon) or shown or vain:
+            quiet_s = self.look_s + 0.1 if grip.stays(soon) else state.quiet_s  # that has been looked at
+            was, belief, soon = grip.known(was, state.target_in, state.belief, soon)
+            return replace(state, sticks=True, turns=0, belief=belief, found=was, grip=Grip(), quiet_s=quiet_s), soon
         now_psi, was_psi = (b.edge_doubt_psi(1) + b.edge_doubt_psi(-1) for b in (soon, was))
         calm = state.quiet_s > 1.5 and abs(state.pushes) < 2
         return (replace(state, found=soon) if now_psi < 0.5 * was_psi and calm else state), soon
@@ -236,10 +240,6 @@ class Brake(Law[BrakeState]):
         return self.clamp(
             inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 and not calm else 1.0) * away_psi)
         )
-
-
-def _with_edges(belief: Belief, found: Belief | None) -> Belief:
-    return belief if found is None else belief.with_numbers(found)
 
 
 def _sign(value: float) -> int:

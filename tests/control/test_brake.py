@@ -13,7 +13,9 @@ from app.physics_bench import open_virtual
 from control.controller import Seen
 from control.controllers.brake import GIVEN_UP, Brake, BrakeState
 from control.design import DesignModel
+from control.grip import Grip
 from control.late_gauge import with_late_gauge
+from control.lateness import Lateness
 from control.resting import Resting
 
 DESIGN = DesignModel()
@@ -132,6 +134,39 @@ def test_a_long_swing_through_the_target_shows_that_it_sticks() -> None:
     found = hold([0.2])[0].belief
     assert next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.008, high_in=0.009)).sticks
     assert not next_move(target_in=0.2, found=found, rest=Resting(low_in=-0.001, high_in=0.009)).sticks
+
+
+def test_sticking_is_noticed_in_the_first_hold_before_it_is_half_over() -> None:
+    """By what the gauge says, and not by where the edge is thought to be: in all of these runs strokes came after 20 s
+    as long as pushes in vain could drag the edge along."""
+    runs = [hold([target_in], {"stiction": 0.2}, seed=seed) for target_in, seed in ((0.17, 6), (0.17, 11), (0.19, 4))]
+    assert all(state.sticks for state, _ in runs)
+    assert max(np.ptp(off[0, 200:]) for _, off in runs) < 0.3
+    assert max(abs(off[0, 300:].mean()) for _, off in runs) < 0.3
+
+
+@pytest.mark.parametrize(("late_s", "sticks"), [(0.0, True), (0.3, False)])
+def test_what_a_plate_did_is_not_judged_by_late_readings(late_s: float, sticks: bool) -> None:
+    found = hold([0.2])[0].belief
+    p, none = found.inside.p, tuple(tuple(1e-8 if i == j else 0.0 for j in range(3)) for i in range(3))
+    stays = Grip(
+        side=-1,
+        landed_psi=p,
+        from_psi=p,
+        psi=p,
+        count=50,
+        pushed_in=0.004,
+        followed_in=0.004,
+        means=(0.0,) * 3,
+        spread=none,
+    )
+    late = Lateness(late_s=late_s, count=1)
+    assert next_move(target_in=0.2, found=found, grip=stays, late=late).sticks == sticks
+
+
+@pytest.mark.parametrize("effects", [{"ep_deadband/play": 0.13}, {"dead_time": 0.2}])
+def test_a_converter_that_does_not_follow_is_not_taken_for_sticking(effects: Mapping[str, float]) -> None:
+    assert not any(hold([0.17, 0.39, 0.28], effects, seed=seed)[0].sticks for seed in (4, 5, 6))
 
 
 @pytest.mark.parametrize("late_s", [0.2, 0.3])
