@@ -33,6 +33,8 @@ _LEAST_STEP = 1e-3
 _HELD, _HELD_NATS = 0.3, 100.0
 #: ... or this share, where far fewer than would by chance (this share of them) are held twice running.
 _CLOCKED, _AGAIN = 0.1, 0.5
+#: ... or this share, where so many of them are held once more in the next row.
+_HUNG, _ON = 0.02, 0.8
 #: Share of readings that repeat the one before, above which the noise is taken from the others.
 _MOSTLY_HELD = 0.4
 #: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.
@@ -130,9 +132,10 @@ def _as_estimated(name: str, estimates: Mapping[str, Estimate]) -> Inserted:
 
 
 def _slow_refresh(stale: Evidence) -> bool:
-    """Whether readings are held by a slow refresh: so often, or, less often, never twice running as lost ones are."""
-    hold = stale.estimates["hold_fraction"].value
-    return hold > _HELD or (hold > _CLOCKED and stale.estimates["again"].ci95[1] < _AGAIN * hold)
+    """Whether readings are held by a slow refresh: so often; or, less often, never twice running as lost ones are, or
+    nearly always, as those of a converter that hangs."""
+    hold, again = stale.estimates["hold_fraction"].value, stale.estimates["again"].ci95
+    return hold > _HELD or (hold > _CLOCKED and again[1] < _AGAIN * hold) or (hold > _HUNG and again[0] > _ON)
 
 
 def _band(events: Sequence[Events], least: float) -> float:

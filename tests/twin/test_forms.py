@@ -126,3 +126,17 @@ def test_a_limit_of_the_converter_that_is_just_reached_is_found() -> None:
     channel = pressure_channel([trial], 0.02)
     space = make_space(Plant(DESIGN), (Cause("ep_rate_limit", effect("ep_rate_limit"), form),), ("ep_tau",), Scales())
     assert fit(channel, space, starts_of(space)).values()[-2:] == pytest.approx(true, rel=0.02)
+
+
+@pytest.mark.parametrize("stiffer", [0.5, -0.3])
+def test_from_where_a_second_spring_helps_each_psi_moves_less(stiffer: float) -> None:
+    """On both curves, as far as the spring's rate is larger there, and no less before."""
+    first, step, closing, opening = curve_tables(
+        plant_with(("nonlinear_spring", "helper", (stiffer, 0.6))).coefficients(1.0)
+    )
+    psi = first + step * np.arange(closing.size)
+    travel, rate = DESIGN.travel, 1.0 / DESIGN.compliance
+    for curve, start_psi in ((closing, DESIGN.a1), (opening, DESIGN.a2)):
+        x = travel * np.array([0.2, 0.5, 0.7, 0.9])
+        needed_psi = start_psi + rate * (x + stiffer * np.maximum(x - 0.6 * travel, 0.0))
+        assert np.interp(needed_psi, psi, curve) == pytest.approx(x, abs=2e-3 * travel)

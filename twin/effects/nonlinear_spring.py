@@ -87,6 +87,10 @@ def _step(c: Coefficients, values: Sequence[float]) -> None:
     _shift(c, values[0] * _span(c) * values[2] * edge(c.xi, values[1], values[2]))
 
 
+def _helper(c: Coefficients, values: Sequence[float]) -> None:
+    _shift(c, values[0] * _span(c) * np.maximum(c.xi - values[1], 0.0))
+
+
 def _area_step(c: Coefficients, values: Sequence[float]) -> None:
     _area(c, values[0] * (edge(c.xi, values[1], values[2]) - 0.5))
 
@@ -145,6 +149,17 @@ _STIFFER = Parameter(
     scale=0.5,
     doc="excess of the spring's rate within the length of the change",
 )
+_HELPS = replace(
+    _STIFFER,
+    lower=-0.8,
+    upper=2.3,  # what is stiffer is a stop (reduced_travel)
+    starts=(-0.2, 0.2),
+    scale=0.3,
+    doc="excess of the spring's rate from there to the closed end, where a second spring takes part",
+)
+_FROM = replace(
+    _CENTRE, name="from", lower=0.05, upper=0.95, starts=(0.3, 0.55, 0.8), doc="where it begins, fraction of travel"
+)
 _DROP = Parameter(
     name="drop",
     kind="pressure",
@@ -179,6 +194,7 @@ EFFECT = Effect(
     "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
     "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel; "
     "step: s = stiffer travel/k width E, E = (1 + tanh(2 (xi - centre) / width)) / 2; "
+    "helper: s = stiffer travel/k max(xi - from, 0); "
     "area_step: p (1 + larger (E - 1/2)); "
     "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
@@ -193,6 +209,7 @@ EFFECT = Effect(
         Form("area_slope_and_bow", (_AREA, replace(_AREA_MID, name="area_mid")), _area_slope_and_bow),
         Form("stem_area", (_AREA,), _stem_area),
         Form("step", (_STIFFER, _CENTRE, _WIDTH), _step),
+        Form("helper", (_HELPS, _FROM), _helper),
         Form("area_step", (replace(_AREA, name="larger"), _CENTRE, _WIDTH), _area_step),
         Form("snaps", (_DROP, _SNAPS_AT, _STEEPER), _snaps, outside=_SNAPS),
         Form("stem_snaps", (_DROP, _SNAPS_AT, _STEEPER), _stem_snaps, outside=_SNAPS),
