@@ -14,7 +14,9 @@ from tests.twin.judged import a_record, judged
 from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import DecisionRules
+from twin.choose.search import SearchRules
 from twin.detectable import Detector, _nuisance, detection_limits, smallest_shown, unseen_in_windows
+from twin.diagnose import Settings, diagnose
 from twin.diagnosis import EffectTest
 from twin.fit.channel import chain_channel
 from twin.plant import Inserted, Plant
@@ -42,7 +44,7 @@ def test_a_threshold_is_found_and_never_undercut() -> None:
 
 
 @pytest.mark.thorough
-@pytest.mark.parametrize("name", ["dead_time", "lvdt_nonlinearity", "sensor_lag"])
+@pytest.mark.parametrize("name", ["dead_time", "lvdt_nonlinearity", "sensor_lag", "stiction", "spring_asymmetry"])
 def test_what_is_larger_than_the_limit_is_noticed_and_what_is_smaller_is_not(healthy: StageResult, name: str) -> None:
     case = healthy.case
     channels = [d.findings.channel for d in healthy.decisions]
@@ -53,8 +55,9 @@ def test_what_is_larger_than_the_limit_is_noticed_and_what_is_smaller_is_not(hea
     for times, noticed in ((0.4, False), (3.0, True)):
         sizes = {p.name: p.neutral if p.size else p.starts[0] for p in form.parameters}
         sizes[test.parameter] = times * test.detection_limit
-        _, judgement = judged(a_record(Plant(DesignModel(), (Inserted(name, form, tuple(sizes.values())),))))
-        assert bool(judgement.causes) is noticed
+        record = a_record(Plant(DesignModel(), (Inserted(name, form, tuple(sizes.values())),)))
+        found = diagnose([record], DesignModel(), settings=Settings(search=SearchRules(most=1))).diagnosis
+        assert bool(found.causes) is noticed
 
 
 def test_every_cause_has_a_line(healthy: StageResult) -> None:
