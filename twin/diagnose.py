@@ -12,6 +12,7 @@ from twin.assemble import assembled
 from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.decide import DecisionRules
+from twin.choose.felt import felt_only
 from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.choose.trim import spoken
@@ -106,7 +107,7 @@ def diagnose(
 def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
     (case, look, sensing, late), settings, result = _found(known, settings, progress)
-    sure = tuple(inside(settled(d, settings.rules, settings.weights)) for d in result.decisions)
+    sure = tuple(felt_only(inside(settled(d, settings.rules, settings.weights))) for d in result.decisions)
     result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
