@@ -55,6 +55,14 @@ def test_a_second_cause_is_worth_what_the_first_leaves_beyond_a_healthy_machine(
     assert _worth(findings, small, large, DecisionRules(gain=0.61, within=1.0), 1.0) is wanted
 
 
+@pytest.mark.parametrize(("within", "left", "wanted"), [(1.0, 0.74, False), (1.0, 0.97, False), (0.0, 0.74, True)])
+def test_leaving_less_than_the_healthy_machine_does_is_no_gain(within: float, left: float, wanted: bool) -> None:
+    """A free curve beside a creep took of what any healthy valve of that kind leaves; the creep left 1.27 of it."""
+    small, large = fitted(1, 1.27), fitted(2, left)
+    findings: Any = SimpleNamespace(none=fitted(0, 106.0), score=lambda one: -100.0 * one.mse)
+    assert _worth(findings, small, large, DecisionRules(gain=0.32, within=within), 1.0) is wanted
+
+
 @pytest.mark.parametrize(
     ("bent", "left", "wanted"),
     [(0.0, 0.0, False), (800.0, 0.0, True), (800.0, 20.0, True), (800.0, 400.0, False)],

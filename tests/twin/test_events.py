@@ -14,7 +14,7 @@ from twin.events.dropouts import find_dropouts
 from twin.events.scan import Events, scan_events
 from twin.events.stale import chance_equal
 from twin.events.stickslip import stick_slip
-from twin.noise.lattice import lattice_step
+from twin.noise.lattice import lattice_step, step_doubt
 from twin.noise.model import estimate_noise
 
 DT = 0.1
@@ -186,3 +186,23 @@ def test_a_lattice_of_few_levels_is_known_when_each_is_read_often() -> None:
     assert lattice_step(coarse[:60]) is None
     held = np.repeat(rng.uniform(0.0, 0.56, 6), 150)
     assert lattice_step(held) is None
+
+
+@pytest.mark.parametrize("register", [0.0, 3e-6, 4e-5])
+def test_the_step_is_known_as_well_as_readings_that_were_rounded_once_more_tell(register: float) -> None:
+    rng, step = np.random.default_rng(5), 0.005093
+    for _ in range(20):
+        reading = np.round(rng.uniform(0.0, 0.56, 4000) / step) * step
+        reading = np.round(reading / register) * register if register else reading
+        found = lattice_step(reading)
+        assert found is not None
+        doubt = step_doubt(reading, found)
+        assert abs(found - step) <= doubt + 1e-12
+        assert doubt < 0.02 * max(register, 1e-6)
+
+
+def test_false_readings_do_not_blur_a_step() -> None:
+    rng, step = np.random.default_rng(6), 0.005
+    reading = np.round(rng.uniform(0.0, 0.56, 4000) / step) * step
+    reading[rng.choice(4000, 40, replace=False)] = rng.uniform(-3.0, 3.0, 40)
+    assert step_doubt(reading, step) < 1e-9

@@ -223,7 +223,8 @@ def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
 
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:
     """Whether the larger hypothesis earns its further causes."""
-    gain = small.mse - large.mse
+    # where it is known what the healthy machine leaves, nothing is gained by leaving less: a free curve takes of that
+    gain = small.mse - (max(large.mse, floor) if rules.within > 0.0 else large.mse)
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence

@@ -15,7 +15,7 @@ from twin.events.evidence import Evidence, nothing
 from twin.events.on_change import on_change
 from twin.events.stale import stale_samples
 from twin.events.stickslip import stick_slip
-from twin.noise.lattice import lattice_step, missing_codes, rounding_error
+from twin.noise.lattice import lattice_step, missing_codes, rounding_error, step_doubt
 from twin.noise.model import NoiseModel
 
 ON_CHANGE = "sensor_quantization/on_change"
@@ -44,7 +44,7 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
     drop = find_dropouts(position, max(sigma, _coarse(position, step)))
     clean = np.where(drop.rows, np.nan, position)
     step = lattice_step(clean) if drop.rows.any() else step
-    quantization, share = _quantization(step, sigma, recording.position_unit)
+    quantization, share = _quantization(recording.position, step, sigma, recording.position_unit)
     evidence = {
         "sensor_dropouts": drop.evidence,
         "stale_samples": stale_samples(recording.time_s, clean, sigma, step),
@@ -73,11 +73,12 @@ def _coarse(position: FloatArray, step: float | None) -> float:
     return step * float(np.sqrt(rounding_error(position, step)))
 
 
-def _quantization(step: float | None, sigma: float, unit: str) -> tuple[Evidence, float]:
+def _quantization(values: FloatArray, step: float | None, sigma: float, unit: str) -> tuple[Evidence, float]:
     if step is None or sigma <= 0.0:
         return nothing("sensor_quantization", "the readings lie on no lattice"), 0.0
     share = min(step**2 / 12.0 / sigma**2, 1.0)
-    estimates = {"step": Estimate(step, (step, step), unit)}
+    doubt = step_doubt(values, step)
+    estimates = {"step": Estimate(step, (step - doubt, step + doubt), unit)}
     if share < _MATERIAL:
         note = f"the step makes {share:.0%} of the noise: fine enough"
         return Evidence("sensor_quantization", 0.0, 1.0, estimates, note), share

@@ -62,6 +62,18 @@ def _fitted(gaps: FloatArray, candidate: float) -> float | None:
     return slope if float(np.median(np.abs(apart))) < _FIT * slope else None
 
 
+def step_doubt(values: FloatArray, step: float) -> float:
+    """By how much the step may be off, in its unit: readings are rounded once more, into registers or a file.
+
+    Levels that lie off the lattice by so much, for 19 of 20 readings, tilt it by twice that over all of it.
+    """
+    seen = values[np.isfinite(values)]
+    codes = np.round((seen - np.median(seen)) / step)
+    off = seen - step * codes
+    span = float(np.ptp(np.quantile(codes, [0.025, 0.975], method="nearest")))
+    return 2.0 * float(np.quantile(np.abs(off - np.median(off)), 0.95)) / max(span, 1.0)
+
+
 def missing_codes(values: FloatArray, step: float) -> tuple[int, int]:
     """(codes that never occur although those on both sides often do, codes between the lowest and the highest)."""
     counts = _counts(values, step)
