@@ -226,3 +226,19 @@ def test_an_idle_effect_is_no_rival_of_a_wrong_number() -> None:
     works = replace(rival, mse=rival.mse - 1.0)
     busy = replace(accepted, findings=replace(alone, fits=(far, works)))
     assert works.names[0] in weigh(busy, Weights()).probability
+
+
+def test_an_idle_effect_is_no_rival_of_one_that_spares_the_numbers() -> None:
+    decision = slipped(0.015)[0].decisions[-1]
+    retuned = decision.findings.retuned
+    lag, other = (
+        c for c in effect_causes(decision.findings.channel) if (c.name, c.form and c.form.name) in LAG_AND_GAIN
+    )
+    idle, sparing = (
+        _sure(replace(retuned, space=_with(retuned, cause), z=np.concatenate([share * retuned.z, np.ones(1)])))
+        for cause, share in ((lag, 1.0), (other, 0.0))
+    )
+    for rival, there in ((idle, False), (_sure(replace(idle, mse=idle.mse - 1.0)), True)):
+        alone = replace(decision.findings, fits=(sparing, rival))
+        weighed = weigh(replace(decision, findings=alone, accepted=sparing), Weights())
+        assert (rival.names[0] in weighed.probability) is there

@@ -14,7 +14,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.fit.channel import Channel
-from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.fitting import Fit, copy_numbers, fit, starts_of
 from twin.fit.space import Unknown, cause_starts, make_space
 
 #: Of what a form leaves; a plainer one that leaves less than that has found what the form missed.
@@ -45,7 +45,8 @@ def beyond_retuning(channel: Channel, fits: Sequence[Fit], retuned: Fit, rounds:
     """
 
     def again(one: Fit) -> Fit:
-        numbers = _retuned_numbers(one, retuned)
+        numbers = np.zeros_like(one.z)  # the re-tuned ones, beside an effect without a size
+        copy_numbers(numbers, one.space, retuned)
         rides = bool(_numbers(one)) and bool(one.space.numbers)  # numbers that ride along with an effect
         if not rides or retuned.mse > _LESS * one.mse or cost(channel, one, numbers) > cost(channel, one):
             return one
@@ -64,13 +65,6 @@ def cost(channel: Channel, one: Fit, z: FloatArray | None = None) -> float:
         return one.mse * channel.rows + one.prior
     residuals = channel.residuals(one.space.plant(z))
     return float(residuals @ residuals + np.sum((z / one.space.spreads) ** 2))
-
-
-def _retuned_numbers(one: Fit, retuned: Fit) -> FloatArray:
-    """The re-tuned numbers in the space of `one`, its effect without a size."""
-    ended = {u.label: value for u, value in zip(retuned.space.unknowns, retuned.values(), strict=True)}
-    z = [(ended[u.label] - u.centre) / u.unit if u.label in ended else 0.0 for u in one.space.unknowns]
-    return np.clip(z, one.space.lower, one.space.upper)
 
 
 def _plainer(one: Fit, fits: Sequence[Fit]) -> Fit | None:

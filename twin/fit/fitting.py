@@ -128,7 +128,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), records: Sequence[Recordi
         heads = [np.concatenate([head, option]) for head in heads for option in options]
     if known:
         for head in heads:
-            _copy_numbers(head, space, known[0])
+            copy_numbers(head, space, known[0])
     return heads
 
 
@@ -167,7 +167,8 @@ def _known_block(known: Fit, name: str, form: str) -> FloatArray | None:
     return None
 
 
-def _copy_numbers(head: FloatArray, space: Space, known: Fit) -> None:
+def copy_numbers(head: FloatArray, space: Space, known: Fit) -> None:
+    """The design numbers of a start vector as they ended in another fit, as far as that has them."""
     for k, name in enumerate(space.numbers):
         if name in known.space.numbers:
             head[k] = known.z[known.space.numbers.index(name)]
