@@ -143,9 +143,9 @@ def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judge
 
 
 def _doubted(judgement: Judgement) -> bool:
-    """Whether none of the named causes is, with its twins, nearly as likely as not."""
+    """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not."""
     probability = {r.name: r.probability for r in judgement.ranking} | {c.name: c.probability for c in judgement.causes}
-    return max(belief(c.name, probability) for c in judgement.causes) < LIKELY
+    return max(belief(c.name, probability, judgement.alike.get(c.name, ())) for c in judgement.causes) < LIKELY
 
 
 def explained_to_noise(result: StageResult) -> bool:

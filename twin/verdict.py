@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
+from twin.choose.alike import alike
 from twin.choose.decide import Decision
 from twin.choose.outside import outside_of
 from twin.choose.weigh import Weighed, Weights, weigh
@@ -33,12 +34,16 @@ COMES_BACK = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Judgement:
-    """The verdict with its causes (sorted by probability), the ranking of all candidates and the confusion sets."""
+    """The verdict with its causes (sorted by probability), the ranking of all candidates and the confusion sets.
+
+    `alike`: for each cause those that these records cannot tell from it (see `twin.choose.alike`).
+    """
 
     verdict: Verdict
     causes: tuple[Cause, ...]
     ranking: tuple[Ranked, ...]
     confusable: tuple[tuple[str, ...], ...]
+    alike: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
 
 def pronounce(
@@ -56,7 +61,8 @@ def pronounce(
         return Judgement("unexplained", (), ranking, ())
     if not causes:
         return Judgement("unexplained" if disturbed else "no_gap", (), ranking, ())
-    return Judgement(verdict_of(causes), causes, ranking, sets)
+    same = {name: alike(d, name) for d in result.decisions for name in d.names}
+    return Judgement(verdict_of(causes), causes, ranking, sets, same)
 
 
 def verdict_of(causes: Sequence[Cause]) -> Verdict:

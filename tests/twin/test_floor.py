@@ -77,18 +77,18 @@ def test_a_rest_behind_a_converter_that_explains_the_gap_needs_no_cause(share: f
 
 
 def findings_of(fits: dict[tuple[str, ...], tuple[float, float]], before: float) -> Findings:
-    """Hypotheses with their (mse, score), on a channel that is not looked at."""
+    """Hypotheses with their (mse, score), all of them far apart, on a channel that is not looked at."""
     base = Plant(DESIGN)
 
-    def one(names: tuple[str, ...], mse: float) -> Fit:
+    def one(names: tuple[str, ...], mse: float, apart: float = 0.0) -> Fit:
         causes = tuple(
             Cause(n) if n.startswith("parameter:") else Cause(n, effect(n), effect(n).forms[0]) for n in names
         )
         space = make_space(base, causes, (), Scales())
         z = np.full(len(space.unknowns), 0.5)
-        return Fit(space, z, mse, 0.0, np.zeros(1), 1e9 * np.eye(z.size), 1)
+        return Fit(space, z, mse, 0.0, np.array([apart]), 1e9 * np.eye(z.size), 1)
 
-    made = {names: one(names, mse) for names, (mse, _) in fits.items()}
+    made = {names: one(names, mse, 100.0 * (k + 1)) for k, (names, (mse, _)) in enumerate(fits.items())}
     none = one((), before)
     scores = {id(f): fits[names][1] for names, f in made.items()} | {id(none): -1e6}
     yardstick: Any = SimpleNamespace(phi=1.0, score=lambda f: scores[id(f)])

@@ -6,10 +6,11 @@ none of them reaches an even chance. Naming one would be wrong more often than r
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from twin.catalog import effects
+from twin.choose.alike import alike
 from twin.choose.claims import size_of
 from twin.choose.decide import Decision, DecisionRules, slack_of
 from twin.choose.findings import Findings
@@ -23,19 +24,23 @@ LIKELY = 0.45
 SLIGHT = 1.69
 
 
-def belief(name: str, probability: Mapping[str, float]) -> float:
-    """The probability of a cause or one of its twins, which no record of these signals could tell from it."""
+def belief(name: str, probability: Mapping[str, float], here: Collection[str] = ()) -> float:
+    """The probability of a cause, or one of its twins, which no record of these signals could tell from it.
+
+    `here`: those that the records at hand cannot tell from it either (see `alike`).
+    """
     one = effects().get(name)
     twins = {twin for names in one.same_as.values() for twin in names} if one is not None else set()
-    return sum(probability.get(other, 0.0) for other in {name, *twins})
+    return sum(probability.get(other, 0.0) for other in {name, *twins, *here})
 
 
 def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision without its unlikely causes; as it was where the rest would leave the gap unexplained."""
     while decision.explained and len(decision.names) > 1:
         probability = weigh(decision, weights).probability
-        weakest = min(decision.names, key=lambda name: belief(name, probability))
-        if belief(weakest, probability) >= LIKELY:
+        beliefs = {name: belief(name, probability, alike(decision, name)) for name in decision.names}
+        weakest = min(beliefs, key=lambda name: beliefs[name])
+        if beliefs[weakest] >= LIKELY:
             break
         smaller = _without(decision, weakest)
         if smaller is None:
@@ -99,4 +104,4 @@ def _guess(decision: Decision, weights: Weights) -> bool:
     if len(decision.names) != 1:
         return False
     [name] = decision.names
-    return belief(name, weigh(decision, weights).probability) < LIKELY
+    return belief(name, weigh(decision, weights).probability, alike(decision, name)) < LIKELY

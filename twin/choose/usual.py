@@ -7,13 +7,16 @@ import numpy as np
 from twin.fit.fitting import Fit
 
 
-def log_usual(fit: Fit) -> float:
-    """How usual the sizes are, as a log-density over the logarithm of the size; 0 where nothing is known."""
+def log_usual(fit: Fit, name: str | None = None) -> float:
+    """How usual the sizes are, as a log-density over the logarithm of the size; 0 where nothing is known.
+
+    Of all causes of a hypothesis together, or of the one called `name`.
+    """
     total, values, at = 0.0, fit.values(), len(fit.space.numbers)
     for cause in fit.space.causes:
         parameters = cause.form.parameters if cause.form is not None else ()
         for k, parameter in enumerate(parameters):
-            if parameter.usual is not None:
+            if parameter.usual is not None and name in (None, cause.name):
                 median, factor = parameter.usual
                 size = abs(values[at + k]) / (median * fit.space.scales.factor(parameter.kind))
                 width = np.log(factor)

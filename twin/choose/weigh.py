@@ -33,7 +33,7 @@ class Weights:
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.97
-    further: float = 0.85
+    further: float = 0.75
     twin_ceiling: float = 0.6
 
 
@@ -73,11 +73,13 @@ def leading(decision: Decision) -> str | None:
 
 
 def _usual(accepted: Fit, fit: Fit) -> float:
-    """What the size of a twin that stands in the place of an accepted cause has for itself, in nats."""
-    for name in accepted.names:
-        if any(stands_in(fit, accepted, name, twin) for twin in twins_of(accepted, name)):
-            return log_usual(fit) - log_usual(accepted)
-    return 0.0
+    """What the size of a twin that stands in the place of an accepted cause has for itself, in nats.
+
+    Whatever stands beside it, lest a twin beside another rival weigh more than beside the accepted cause.
+    """
+    gone = [name for name in accepted.names if name not in fit.names]
+    pairs = [(name, twin) for name in gone for twin in twins_of(accepted, name) if twin in fit.names]
+    return sum(log_usual(fit, twin) - log_usual(accepted, name) for name, twin in pairs)
 
 
 def stands_in(fit: Fit, accepted: Fit, name: str, twin: str) -> bool:
