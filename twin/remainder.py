@@ -13,8 +13,9 @@ SLIGHT = 1.3
 #: Of a gap of so many times the noise, one cause that leaves this share of the squares does not explain it, nor do
 #: several behind the same signal that leave half of that, nor one with more numbers than `FREE`: they can imitate more.
 #: That is forgiven where all of a record is explained to its noise.
-#: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap, and those
-#: of the converter for which the measured pressure speaks.
+#: An erratic cause (its jumps follow no model for long) may leave more, and so may any beside a smaller gap, those
+#: of the converter for which the measured pressure speaks, and a single law of few numbers by which all of the record
+#: is explained to its noise: it may have been fitted without the only block in which it shows.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
 
 
@@ -41,5 +42,6 @@ def leaves_too_much(
     told = all(c.name in shown for c in causes)
     several = max(Counter(apart and c.stage == "ep" for c in causes).values()) > 1
     many = any(len(c.parameters) > FREE for c in causes) and not exact
-    share = (ERRATIC if erratic or told else LEFT) * (0.5 if several or many else 1.0)
+    plain = exact and len(causes) == 1 and len(causes[0].parameters) <= FREE
+    share = (ERRATIC if erratic or told or plain else LEFT) * (0.5 if several or many else 1.0)
     return left > share * gap

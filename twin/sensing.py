@@ -34,7 +34,7 @@ _HELD, _HELD_NATS = 0.3, 100.0
 #: ... or this share, where far fewer than would by chance (this share of them) are held twice running.
 _CLOCKED, _AGAIN = 0.1, 0.5
 #: ... or this share, where so many of them are held once more in the next row.
-_HUNG, _ON = 0.02, 0.8
+_HUNG, _ON = 0.02, 0.5
 #: Share of readings that repeat the one before, above which the noise is taken from the others.
 _MOSTLY_HELD = 0.4
 #: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.

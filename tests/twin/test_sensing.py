@@ -64,12 +64,12 @@ def test_as_many_lost_replies_do_hold_twice_running() -> None:
     assert "stale_samples" not in found(replace(recording, position=recording.position[source]))
 
 
-@pytest.mark.parametrize(("rows", "stale"), [(25, True), (1, False)])
+@pytest.mark.parametrize(("rows", "stale"), [(25, True), (6, True), (1, False)])
 def test_readings_that_hang_now_and_then_are_stale(rows: int, stale: bool) -> None:
     """As many held readings one by one are lost replies."""
     record, dice = fast_moving(), np.random.default_rng(4)
     reading = record.position.copy()
-    for at in dice.choice(record.n // 30 - 1, record.n // 400, replace=False) if rows > 1 else ():
+    for at in dice.choice(record.n // 30 - 1, record.n // (16 * rows), replace=False) if rows > 1 else ():
         reading[30 * at : 30 * at + rows] = reading[30 * at]
     for at in dice.choice(np.arange(1, record.n), record.n // 16, replace=False) if rows == 1 else ():
         reading[at] = reading[at - 1]

@@ -223,3 +223,21 @@ def test_a_free_curve_that_explains_all_of_the_record_may_leave_as_much_as_a_law
     levels = parts(40.0, 40.0, 0.25 * 40.0)
     told = [upheld(levels, found, 1.0, NOTHING_SEEN, True, 1.0, False, exact)[1].verdict for exact in (False, True)]
     assert told == ["unexplained", "effect"]
+
+
+@pytest.mark.parametrize(
+    ("names", "exact", "verdict"),
+    [
+        (("supply_saturation",), True, "effect"),
+        (("supply_saturation",), False, "unexplained"),
+        (("supply_saturation", "ep_rate_limit"), True, "unexplained"),
+    ],
+)
+def test_a_law_that_explains_all_of_the_record_may_miss_the_block_that_shows_it(
+    names: tuple[str, ...], exact: bool, verdict: str
+) -> None:
+    """A ceiling that is met in one block only is fitted without it when that block is held out: 11 % of the squares."""
+    size = Estimate(11.3, (11.2, 11.4), "psi")
+    found = Judgement("effect", tuple(Named(n, effect(n).stage, 0.97, None, {"supply": size}) for n in names), (), ())
+    levels = parts(3.14, 2.48, 1.4)
+    assert upheld(levels, found, 1.0, NOTHING_SEEN, True, 1.0, False, exact)[1].verdict == verdict
