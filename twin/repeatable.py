@@ -17,15 +17,16 @@ from twin.case import Case
 from twin.choose.decide import Decision
 from twin.fit.channel import predict_reading_given_pressure
 from twin.fit.trial import Trial
+from twin.noise.lattice import lattice_step
 from twin.noise.model import LOUD, SignalNoise
 from twin.noise.repeats import find_repeats
 from twin.noise.robust import robust_sigma
 
 #: Repeats are too different when they differ by many times the resting reading's noise (`LOUD`), and by this share of
-#: travel, or by the pressure that moves the stem so far. Where the measured pressure accounts for its own wandering,
-#: what is left need not be so loud.
+#: travel, or by the pressure that moves the stem so far. Where the pressure is measured, what it does not account for
+#: need not be so loud: healthy machines differ by up to 1.35 times their noise at rest.
 MATERIAL = 0.006
-UNLIKE, MATERIAL_GIVEN_PRESSURE = 2.0, 0.003
+UNLIKE, MATERIAL_GIVEN_PRESSURE = 1.5, 0.0015
 #: Of the variance by which repeats differ: causes that leave less explain why, if the resting reading has less, too.
 #: Of the noise of the resting reading: what may be left then.
 EXPLAINED, AT_REST = 0.5, 1.5
@@ -93,15 +94,15 @@ def disturbance(case: Case, trials: Sequence[Trial] = (), margin_position: float
         between = noise.by_source.get("repeats", 0.0)
         if between > LOUD * noise.sigma and between * gain > slack:
             return Disturbance(name, between, noise.sigma, unit)
-    return _given_the_pressure(case, trials, MATERIAL_GIVEN_PRESSURE * design.travel + 2.0 * margin_position)
+    return _given_the_pressure(case, trials)
 
 
-def _given_the_pressure(case: Case, trials: Sequence[Trial], slack: float) -> Disturbance | None:
+def _given_the_pressure(case: Case, trials: Sequence[Trial]) -> Disturbance | None:
     """The same for the position, less what the design makes of the pressure that was measured each time."""
-    noise = case.noise.position
-    resting = noise.resting
+    noise, design = case.noise.position, case.base.design
+    resting = _at_rest(case)
     driven = [t for t in trials if t.pressure is not None]
-    if not resting or len(driven) < len(trials) or noise.by_source.get("repeats", 0.0) <= UNLIKE * resting:
+    if resting is None or len(driven) < len(trials) or noise.by_source.get("repeats", 0.0) <= UNLIKE * resting:
         return None
     errors = [
         replace(t.recording, position=t.recording.position - predict_reading_given_pressure(case.base, t))
@@ -109,6 +110,13 @@ def _given_the_pressure(case: Case, trials: Sequence[Trial], slack: float) -> Di
     ]
     pieces = [piece for pair in find_repeats(errors) if (piece := pair.difference("position")) is not None]
     between = robust_sigma(np.concatenate(pieces)) if pieces else 0.0
-    if between <= max(UNLIKE * resting, slack):
+    if between <= max(UNLIKE * resting, MATERIAL_GIVEN_PRESSURE * design.travel):
         return None
-    return Disturbance("position", between, resting, case.base.design.position_unit)
+    return Disturbance("position", between, resting, design.position_unit)
+
+
+def _at_rest(case: Case) -> float | None:
+    """The position's noise at rest; a coarse reading that rests on one step errs by its rounding all the same."""
+    step = lattice_step(np.concatenate([r.position for r in case.recordings])) or 0.0
+    resting = case.noise.position.resting
+    return float(np.hypot(resting, step / np.sqrt(12.0))) if resting else None

@@ -120,3 +120,22 @@ def test_timing_is_neither_a_cause_nor_in_the_model() -> None:
     outcome = diagnose([recorded(0.0, 0.008)], DesignModel(), (), UP_TO_TWO)
     assert outcome.diagnosis.verdict == "no_gap"
     assert not outcome.model.effects
+
+
+def twice_through(jumps_in: float = 0.0, step_in: float = 0.0) -> Recording:
+    """A healthy valve run twice: its reading jumps now and then by so much, or is so coarse."""
+    dice, healthy = np.random.default_rng(6), recorded(0.0)
+    at = np.arange(healthy.n) // 150
+    position = healthy.position + jumps_in * dice.integers(0, 2, at[-1] + 1)[at]
+    return replace(healthy, position=step_in * np.round(position / step_in) if step_in else position)
+
+
+@pytest.mark.parametrize(
+    ("how", "disturbed"),
+    [({}, False), ({"jumps_in": 0.0006}, False), ({"jumps_in": 0.003}, True), ({"step_in": 0.006}, False)],
+)
+def test_what_healthy_machines_never_do_between_repeats(how: dict[str, float], disturbed: bool) -> None:
+    case = make_case([twice_through(**how)], DESIGN)
+    assert case.sigma_p is not None
+    driven = [t.with_pressure(smoothed_pressure(case.base, t, case.sigma_p)) for t in case.trials]
+    assert (disturbance(case, driven) is not None) is disturbed
