@@ -1,0 +1,104 @@
+"""Examines the diagnosis with somebody's sealed folder: `python -m bench.exam FOLDER --out ANSWERS [--processes 2]`.
+
+The folder holds `design.toml` (or none), `caseNN/*.csv` (the recordings of one machine each) and `SEALED.json`: for
+each case its class (healthy, number, single, pair, outsider) and its true causes. `unseen/caseNN.csv` with
+`unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same machine on a record that the
+diagnosis is never shown. The program is called as anybody calls it; every answer stays in ANSWERS, and a run that was
+stopped goes on where it was. The labels are opened when the last answer is written.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bench.exam_score import Answer, label_of, text
+
+_KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
+_LIMIT_S = 900.0
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+
+
+def answered(folder: Path, out: Path, case: str) -> Path:
+    """The file with the answer to a case, which is made if it is not there; an error is an answer, too."""
+    path = out / f"{case}.json"
+    if not path.exists():
+        began_s = time.perf_counter()
+        said = _diagnosed(folder, out / case, case)
+        said |= {"seconds": round(time.perf_counter() - began_s, 1), "unseen": _unseen(folder, out / case, case)}
+        path.write_text(json.dumps(said), encoding="utf-8")
+    return path
+
+
+def cases_of(folder: Path) -> list[str]:
+    """The names of the cases: folders with at least one recording."""
+    return sorted(path.name for path in folder.glob("case*") if any(path.glob("*.csv")))
+
+
+def _diagnosed(folder: Path, out: Path, case: str) -> dict[str, object]:
+    runs, design = sorted((folder / case).glob("*.csv")), folder / "design.toml"
+    words = ["diagnose", *map(str, runs), *(["--design", str(design)] if design.exists() else []), "--out", str(out)]
+    try:
+        _call(*words)
+    except subprocess.SubprocessError as error:
+        return {"error": str(getattr(error, "stderr", "") or error).strip()[-400:]}
+    said = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
+    return {key: said[key] for key in _KEPT}
+
+
+def _unseen(folder: Path, out: Path, case: str) -> dict[str, float] | None:
+    """RMS [in] by which the design and the updated model miss the reading of a record that was never shown."""
+    record, truth, design = folder / "unseen" / f"{case}.csv", folder / "unseen" / f"{case}.npz", folder / "design.toml"
+    if not (record.exists() and truth.exists() and design.exists() and (out / "model.toml").exists()):
+        return None
+    reading_in = np.load(truth)["x_analog"]
+    models = {"before_in": design, "after_in": out / "model.toml"}
+    return {key: _miss_in(model, record, reading_in, out / "simulated.csv") for key, model in models.items()}
+
+
+def _miss_in(model: Path, record: Path, reading_in: NDArray[np.float64], out: Path) -> float:
+    _call("simulate", str(model), str(record), "--out", str(out))
+    with out.open(encoding="utf-8") as file:
+        column = file.readline().strip().split(",").index("position_in")
+        simulated_in = np.loadtxt(file, delimiter=",", usecols=column, ndmin=1)
+    return float(np.sqrt(np.mean((simulated_in - reading_in) ** 2)))
+
+
+def _call(*words: str) -> None:
+    command = [sys.executable, "-m", "app", *words]
+    environment = os.environ | _ONE_THREAD
+    subprocess.run(command, env=environment, check=True, capture_output=True, text=True, timeout=_LIMIT_S)
+
+
+def main() -> None:
+    """Answers what is not answered yet, then opens the labels and prints what was right."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("folder", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--processes", type=int, default=1)
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    cases = cases_of(options.folder)
+    with ThreadPoolExecutor(options.processes) as pool:
+        for path in pool.map(partial(answered, options.folder, options.out), cases):
+            print(f"{path.stem} answered", file=sys.stderr, flush=True)
+    sealed = json.loads((options.folder / "SEALED.json").read_text(encoding="utf-8"))
+    answers = [
+        Answer(case, label_of(sealed[case]), json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")))
+        for case in cases
+    ]
+    print(text(answers))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,105 @@
+"""A sealed folder of somebody else's is answered before its labels are opened, and scored by the names."""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bench import exam
+from bench.exam_score import Answer, label_of, text
+from control.design import DesignModel, save_design
+from logs.recording import Recording
+from twin.catalog import effect
+from twin.plant import Inserted, Plant
+from twin.simulate import simulate_recording
+
+GAP = {"before": 2.0, "retuned": 1.5, "after": 0.2, "noise_floor": 0.2}
+
+
+def answer(cls: str, truth: list[str], verdict: str, *named: tuple[str, str, float], **more) -> Answer:
+    """An answer that names causes as (name, stage, probability)."""
+    causes = [{"name": n, "stage": stage, "probability": p} for n, stage, p in named]
+    said = {"verdict": verdict, "causes": causes, "confusable": [], "ranking": [], "gap": GAP, "seconds": 9.0}
+    return Answer("case01", label_of({"cls": cls, "truth": truth}), said | {"where": {"stage": None}} | more)
+
+
+CREEP, DRIFT = ("creep", "actuator", 0.97), ("lvdt_drift", "sensor", 0.6)
+ANSWERS = [
+    answer("healthy", [], "no_gap"),
+    answer("healthy", [], "effect", DRIFT),
+    answer("number", ["parameter:ep_tau"], "parameter", ("parameter:ep_tau", "ep", 0.97)),
+    answer("single", ["creep"], "effect", CREEP, unseen={"before_in": 0.01, "after_in": 0.001}),
+    answer("single", ["stiction"], "effect", CREEP, confusable=[["creep", "stiction"]]),
+    answer("pair", ["creep", "lvdt_drift"], "effects", CREEP, DRIFT),
+    answer("pair", ["creep", "stiction"], "effects", CREEP, DRIFT),
+    answer("outsider", ["outsider:bent_rod"], "unexplained"),
+    answer("outsider", ["outsider:bent_rod"], "effect", CREEP),
+]
+
+
+def test_counts_are_strictly_by_the_names() -> None:
+    said = text(ANSWERS)
+    assert "| 9 | 5 of 9 | 1 of 2 | 4 of 5 | 5 of 5 | 1 of 2 | 1 of 2 | 1.14 |" in said
+    assert "true of those said with 0.96 or more: 4 of 6" in said
+    assert "closure on an unseen record: median 0.9900" in said
+
+
+def test_a_set_that_holds_the_truth_is_counted_beside() -> None:
+    assert [a.covered for a in ANSWERS] == [True, False, True, True, True, True, False, True, False]
+
+
+def test_what_is_wrong_is_listed_with_what_was_said() -> None:
+    misses = text([*ANSWERS, answer("single", ["creep"], "", error="case.csv: row 3: no number")]).split("misses:")[1]
+    assert "healthy -> effect: lvdt_drift 0.60" in misses
+    assert "creep, stiction -> effects: creep 0.97, lvdt_drift 0.60" in misses
+    assert "ended in an error: case.csv: row 3: no number" in misses
+    assert "bent_rod -> unexplained" not in misses
+
+
+@pytest.mark.parametrize(("name", "stage"), [("parameter:ep_tau", "ep"), ("stiction", "actuator")])
+def test_the_stage_is_the_vocabularys(name: str, stage: str) -> None:
+    assert [cause.stage for cause in label_of({"cls": "single", "truth": [name]}).causes] == [stage]
+
+
+def test_a_name_that_nobody_knows_is_an_error() -> None:
+    with pytest.raises(KeyError, match="sticktion"):
+        label_of({"cls": "single", "truth": ["sticktion"]})
+
+
+def write(path: Path, plant: Plant, seed: int, noisy: bool) -> np.ndarray:
+    """A record of a plant as a stranger's CSV; the noise-free reading [in]."""
+    dice, n = np.random.default_rng(seed), 1200
+    command = np.repeat(dice.uniform(4.5, 13.0, 24), 50)
+    blank = Recording("valve", np.arange(n) * 0.2, command, np.zeros(n), command)
+    pressure, position = simulate_recording(plant, blank)
+    noise = dice.normal(0.0, 5e-4, n) if noisy else np.zeros(n)
+    columns = np.column_stack((blank.time_s, command, pressure + 4.0 * noise, position + noise))
+    path.parent.mkdir(parents=True, exist_ok=True)
+    head = "time_s,command_psi,pressure_psi,position_in"
+    np.savetxt(path, columns, delimiter=",", header=head, comments="", fmt="%.6f")
+    return position
+
+
+@pytest.mark.thorough
+def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) -> None:
+    folder, out = tmp_path / "sealed", tmp_path / "answers"
+    wrong = Inserted("lvdt_calibration", effect("lvdt_calibration").form("gain"), (0.05,))
+    for case, plant in {"case01": Plant(DesignModel()), "case02": Plant(DesignModel(), (wrong,))}.items():
+        write(folder / case / "run1.csv", plant, 1, noisy=True)
+        reading_in = write(folder / "unseen" / f"{case}.csv", plant, 2, noisy=False)
+        np.savez(folder / "unseen" / f"{case}.npz", x_analog=reading_in)
+    save_design(DesignModel(), folder / "design.toml")
+    sealed = {"case01": {"cls": "healthy", "truth": []}, "case02": {"cls": "single", "truth": ["lvdt_calibration"]}}
+    monkeypatch.setattr(sys, "argv", ["exam", str(folder), "--out", str(out), "--processes", "2"])
+    with pytest.raises(FileNotFoundError):  # no labels yet: the answers are there all the same
+        exam.main()
+    assert sorted(path.name for path in out.glob("*.json")) == ["case01.json", "case02.json"]
+    (folder / "SEALED.json").write_text(json.dumps(sealed), encoding="utf-8")
+    exam.main()
+    said = capsys.readouterr().out
+    assert "| 2 | 2 of 2 | 1 of 1 | 1 of 1 | 1 of 1 | 0 of 0 | 0 of 0 |" in said
+    assert "closure on an unseen record: median 0.99" in said or "median 1.0" in said
