@@ -1,0 +1,1 @@
+"""What even a controller that knows everything but the future would miss."""
