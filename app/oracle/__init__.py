@@ -1,1 +1,0 @@
-"""What even a controller that knows everything but the future would miss."""
