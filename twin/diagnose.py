@@ -45,6 +45,7 @@ from twin.unexplained import residual_signature
 from twin.verdict import Judgement
 from twin.wander import unrest
 from twin.whereabouts import attributed, whereabouts
+from twin.witness import gauge_note
 
 Progress = Callable[[str, float], None]
 Prepared = tuple[Case, Case, Sensing, tuple[Inserted, ...]]
@@ -113,7 +114,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials, settings.seed)
     itself = unrest(case, everything, settings.margin.position)
-    known.notes += itself.notes(case)
+    known.notes += [*itself.notes(case), *([gauge_note(case)] if result.astray else [])]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
     hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed)

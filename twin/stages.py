@@ -19,7 +19,9 @@ from twin.fit.fitting import Fit
 from twin.fit.numbers import nominal, retuned
 from twin.fit.smooth import noise_left, smoothed_pressure
 from twin.fit.trial import Trial
+from twin.form_by_stem import formed_by_stem
 from twin.plant import Plant
+from twin.witness import driven_by_model, gauge_wanders
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25
@@ -30,11 +32,15 @@ Watch = Callable[[Searcher], None]
 
 @dataclass(frozen=True, slots=True)
 class StageResult:
-    """Decisions per channel ("pressure" and "position", or "chain" alone) and the plant they add up to."""
+    """Decisions per channel ("pressure" and "position", or "chain" alone) and the plant they add up to.
+
+    `astray`: the pressure was read, but the stem did not follow what was read (see `twin.witness`).
+    """
 
     case: Case
     decisions: tuple[Decision, ...]
     trials: tuple[Trial, ...]
+    astray: bool = False
 
     @property
     def causes(self) -> tuple[str, ...]:
@@ -72,11 +78,20 @@ def judge(
             rules = replace(rules, quiet=3.0 * rules.quiet)
         return StageResult(case, (_judge(case, channel, search, rules, progress, watch),), case.trials)
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
-    trials = drive_by_measured(case, first)
+    first = formed_by_stem(case, first, rules)
+    trials, modelled = drive_by_measured(case, first), driven_by_model(_believed(first), case.trials)
+    astray = gauge_wanders(case, trials, modelled)
+    trials = modelled if astray else trials
     channel = _sharp(case, position_channel(trials, case.sigma_y))
-    floor = 1.0 + pressure_doubt(case, channel, first)
+    floor = 1.0 if astray else 1.0 + pressure_doubt(case, channel, first)
     second = _judge(case, channel, search, rules, progress, watch, floor)
-    return StageResult(case, (first, second), trials)
+    return StageResult(case, (first, second), trials, astray)
+
+
+def driven_again(case: Case, result: StageResult) -> tuple[Trial, ...]:
+    """The trials of another look at the same records, driven as those of a result."""
+    converter = result.decisions[0]
+    return driven_by_model(_believed(converter), case.trials) if result.astray else drive_by_measured(case, converter)
 
 
 def _sharp(case: Case, channel: Channel) -> Channel:
@@ -114,8 +129,19 @@ def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:
 
 def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> tuple[Trial, ...]:
     """The trials with their smoothed measured pressure, smoothed about the best converter model there is."""
-    best = min((converter.findings.none, *converter.findings.fits), key=lambda f: f.mse)
-    return driven_about(best.plant, case, careful)
+    return driven_about(_best(converter), case, careful)
+
+
+def _best(converter: Decision) -> Plant:
+    """The best converter model there is; what was accepted, where that is as good."""
+    if converter.explained and converter.exact:
+        return converter.accepted.plant
+    return min((converter.findings.none, *converter.findings.fits), key=lambda f: f.mse).plant
+
+
+def _believed(converter: Decision) -> Plant:
+    """The converter with what was accepted: what else fits the readings best fits a gauge that strays, too."""
+    return (converter.accepted if converter.explained else converter.findings.none).plant
 
 
 def driven_about(plant: Plant, case: Case, careful: bool = True) -> tuple[Trial, ...]:

@@ -21,7 +21,7 @@ from twin.noise.model import NoiseModel, SignalNoise
 from twin.place import Place
 from twin.refresh import Freshness
 from twin.simulate import beginning
-from twin.stages import StageResult, drive_by_measured
+from twin.stages import StageResult, driven_again
 from twin.timegrid import make_grid
 
 Rows = npt.NDArray[np.int64]
@@ -82,7 +82,7 @@ def on_everything(case: Case, result: StageResult) -> StageResult:
     """What was decided on a look, with the trials of the whole case."""
     if result.case is case:
         return result
-    return StageResult(case, result.decisions, drive_by_measured(case, result.decisions[0]))
+    return replace(result, case=case, trials=driven_again(case, result))
 
 
 def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int) -> DataNote:

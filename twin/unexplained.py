@@ -19,6 +19,7 @@ from twin.fit.trial import Trial
 from twin.repeatable import Disturbance, repeated_share
 from twin.stages import StageResult
 from twin.swing import Swing
+from twin.verdict import strays
 from twin.where.regime import DIRECTIONS, REGIMES, classify
 
 _BINS = 10
@@ -43,6 +44,8 @@ def residual_signature(
     rival = next((d for d in result.decisions if outside_of(d)), None)
     if rival is not None:
         found["looks_like"] = _looks_like(case, rival)
+    elif strays(result):
+        found["looks_like"] = {"what": "the pressure gauge itself strayed, because the stem did not follow it"}
     if loud is not None:
         found["does_not_repeat"] = {
             "signal": loud.signal,

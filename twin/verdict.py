@@ -15,6 +15,7 @@ from twin.diagnosis import Cause, Estimate, Ranked, Verdict
 from twin.fit.fitting import Fit
 from twin.fit.numbers import unit
 from twin.fit.space import Cause as Candidate
+from twin.remainder import CLEAR
 from twin.repeatable import repeated_share
 from twin.sensing import Sensing
 from twin.stages import StageResult
@@ -91,8 +92,13 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
 def _minor(result: StageResult, decision: Decision, ep_share: float) -> bool:
     """Whether a channel's gap is next to nothing of the whole one: what moves no stem, what another one outweighs."""
     if decision.findings.channel.name == "pressure":
-        return ep_share < MATERIAL_SHARE
+        return ep_share < MATERIAL_SHARE and not strays(result)
     return any(d.explained for d in result.decisions if d is not decision) and 1.0 - ep_share < MINOR_SHARE
+
+
+def strays(result: StageResult) -> bool:
+    """Whether the pressure is clearly off, and the stem says that it is the gauge (see `twin.witness`)."""
+    return result.astray and result.decisions[0].findings.none.mse > CLEAR**2 * result.decisions[0].floor
 
 
 def _comes_back(decision: Decision) -> bool:

@@ -92,7 +92,8 @@ def findings_of(fits: dict[tuple[str, ...], tuple[float, float]], before: float)
     none = one((), before)
     scores = {id(f): fits[names][1] for names, f in made.items()} | {id(none): -1e6}
     yardstick: Any = SimpleNamespace(phi=1.0, score=lambda f: scores[id(f)])
-    return Findings(None, none, none, tuple(made.values()), yardstick)  # type: ignore[arg-type]
+    channel: Any = SimpleNamespace(name="chain")
+    return Findings(channel, none, none, tuple(made.values()), yardstick)
 
 
 def test_wrong_numbers_that_are_not_enough_give_way_to_the_effect_they_were_taken_for() -> None:

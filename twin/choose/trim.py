@@ -15,6 +15,7 @@ from twin.choose.claims import size_of
 from twin.choose.decide import Decision, DecisionRules, slack_of
 from twin.choose.findings import Findings
 from twin.choose.idle import idle
+from twin.choose.reach import moved_square
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 
@@ -82,9 +83,10 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
 
     `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
     equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
-    percent: where a signal alone would pass for healthy, what explains the rest of it is no fault.
+    percent: where a signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the
+    stem so far that the position would not.
     """
-    unsure = [_guess(d, weights) or _slight(d) for d in decisions]
+    unsure = [_guess(d, weights) or (_slight(d) and not _reaches(d, decisions)) for d in decisions]
     sure = seen or any(d.names and not doubt for d, doubt in zip(decisions, unsure, strict=True))
     return tuple(_silent(d) if sure and doubt else d for d, doubt in zip(decisions, unsure, strict=True))
 
@@ -97,6 +99,14 @@ def _silent(decision: Decision) -> Decision:
 def _slight(decision: Decision) -> bool:
     """Whether the design alone leaves little more than the noise on this channel."""
     return bool(decision.names) and decision.findings.none.mse < SLIGHT * decision.floor
+
+
+def _reaches(decision: Decision, decisions: Sequence[Decision]) -> bool:
+    """Whether a pressure that passes for healthy is off by what shows behind the stem."""
+    behind = decisions[-1].findings.channel
+    if decision.findings.channel.name != "pressure" or behind.name == "pressure":
+        return False
+    return 1.0 + moved_square(decision, behind.sigma) > SLIGHT
 
 
 def _guess(decision: Decision, weights: Weights) -> bool:

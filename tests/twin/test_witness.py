@@ -1,0 +1,125 @@
+"""The stem as a second witness of the pressure: what strays is the gauge, or the form of a converter's cause."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter1d
+
+from control.design import DesignModel
+from logs.recording import FloatArray, Recording
+from tests.twin.judged import UP_TO_TWO, a_record
+from twin.case import Case, make_case
+from twin.catalog import effect
+from twin.choose.decide import Decision, DecisionRules, decide
+from twin.choose.findings import Findings
+from twin.choose.score import make_yardstick
+from twin.choose.trim import SLIGHT, spoken
+from twin.choose.weigh import Weights
+from twin.diagnose import diagnose
+from twin.fit.channel import position_channel, pressure_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import Cause, make_space
+from twin.form_by_stem import formed_by_stem
+from twin.plant import Inserted, Plant
+from twin.simulate import simulate_recording
+from twin.stages import driven_about
+from twin.witness import driven_by_model, gauge_wanders
+
+DESIGN = DesignModel()
+GAUGE_PSI, READING_IN = 0.03, 1.5e-4
+PLAY = Inserted("ep_deadband", effect("ep_deadband").form("play"), (0.018,))
+
+
+def slow(n: int, seed: int) -> FloatArray:
+    """Unrest of unit deviation within some five seconds."""
+    wave = gaussian_filter1d(np.random.default_rng(seed).normal(0.0, 1.0, n), 12.0)
+    return np.asarray(wave / wave.std())
+
+
+def read(record: Recording, gauge_psi: float) -> Recording:
+    """What a valve reads whose pressure gauge is so noisy; `record` is without noise."""
+    dice = np.random.default_rng(4)
+    assert record.pressure is not None
+    pressure = record.pressure + dice.normal(0.0, gauge_psi, record.n)
+    return replace(record, pressure=pressure, position=record.position + dice.normal(0.0, READING_IN, record.n))
+
+
+def straying(gauge_psi: float = 0.0, air_psi: float = 0.0) -> Recording:
+    """A healthy valve whose pressure gauge strays slowly, or whose pressure really does."""
+    healthy = a_record(Plant(DESIGN))
+    command = healthy.command + air_psi * slow(healthy.n, 7)
+    pressure, position = simulate_recording(Plant(DESIGN), replace(healthy, command=command))
+    strays = pressure + gauge_psi * slow(healthy.n, 7)
+    return replace(read(replace(healthy, pressure=strays, position=position), 0.004), command=healthy.command)
+
+
+@pytest.mark.parametrize(("where", "gauge"), [({"gauge_psi": 0.02}, True), ({"air_psi": 0.02}, False), ({}, False)])
+def test_what_the_stem_does_not_follow_is_the_gauge(where: dict[str, float], gauge: bool) -> None:
+    case = make_case([straying(**where)], DESIGN)
+    by_reading = driven_about(case.base, case)
+    assert gauge_wanders(case, by_reading, driven_by_model(case.base, case.trials)) is gauge
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("gauge_psi", "verdict"), [(0.008, "no_gap"), (0.04, "unexplained")])
+def test_a_straying_gauge_is_no_gap_of_the_stem_and_is_said(gauge_psi: float, verdict: str) -> None:
+    found = diagnose([straying(gauge_psi=gauge_psi)], DESIGN, (), UP_TO_TWO).diagnosis
+    assert found.verdict == verdict
+    said = " ".join(note.what for note in found.data_quality) + found.statement
+    assert "stem does not follow" in said or "did not follow" in said or gauge_psi < 0.01
+
+
+@cache
+def converter(form: str) -> tuple[Case, Decision]:
+    """What a noisy gauge says of a converter with a play, held to be so `form`ed; it turns round in its band."""
+    record = a_record(Plant(DESIGN), n=3000)
+    waves = 9.0 + 2.5 * np.sin(record.time_s / 7.0) + 1.2 * np.sin(record.time_s / 3.1)
+    record = replace(record, command=np.where(record.time_s < 40.0, waves[200], waves))
+    pressure, position = simulate_recording(Plant(DESIGN, (PLAY,)), record)
+    case = make_case([read(replace(record, pressure=pressure, position=position), GAUGE_PSI)], DESIGN)
+    assert case.sigma_p is not None
+    channel = pressure_channel(case.trials, case.sigma_p)
+    cause = Cause("ep_deadband", effect("ep_deadband"), effect("ep_deadband").form(form))
+    space = make_space(case.base, (cause,), channel.numbers, case.scales)
+    found = fit(channel, space, starts_of(space), refine=2)
+    none = fit(channel, make_space(case.base, (), (), case.scales), [np.zeros(0)])
+    findings = Findings(channel, none, none, (found,), make_yardstick(found.residuals, channel.use))
+    return case, decide(findings, DecisionRules(evidence=0.0, gain=0.0, share=0.0))
+
+
+@pytest.mark.parametrize("form", ["overlap", "play"])
+def test_the_form_is_the_one_that_the_stem_followed(form: str) -> None:
+    case, decision = converter(form)
+    assert decision.names == ("ep_deadband",)
+    formed = formed_by_stem(case, decision, DecisionRules())
+    [cause] = formed.accepted.space.causes
+    assert cause.form is not None
+    assert cause.form.name == "play"
+    assert formed.names == decision.names
+    assert formed.accepted in formed.findings.fits
+
+
+def silent(decision: Decision) -> Decision:
+    return replace(decision, accepted=decision.findings.none, explained=False)
+
+
+def position_of(case: Case) -> Decision:
+    """A position that is explained without any cause."""
+    channel = position_channel(driven_about(case.base, case), case.sigma_y)
+    none = fit(channel, make_space(case.base, (), (), case.scales), [np.zeros(0)])
+    findings = Findings(channel, none, none, (), make_yardstick(none.residuals, channel.use))
+    return silent(decide(findings, DecisionRules()))
+
+
+def test_what_a_noisy_gauge_hardly_shows_is_named_where_it_moves_the_stem() -> None:
+    """The pressure alone would pass for healthy; the stem is off by several times the noise of its reading."""
+    case, decision = converter("play")
+    assert decision.findings.none.mse < SLIGHT
+    behind = position_of(case)
+    assert spoken([decision, behind], Weights(), seen=True)[0].names == ("ep_deadband",)
+    blunt = replace(behind.findings, channel=replace(behind.findings.channel, sigma=0.02))
+    assert spoken([decision, replace(behind, findings=blunt)], Weights(), seen=True)[0].names == ()

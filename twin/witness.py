@@ -1,0 +1,52 @@
+"""The stem as a second witness of the pressure: a gauge may wander where the pressure does not.
+
+What a gauge reads beyond the converter's model is either air, which moves the stem, or the gauge. Where a valve that is
+driven by the model's pressure leaves far less of the position than one that is driven by the reading, it was the gauge.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from logs.recording import DataNote
+from twin.case import Case
+from twin.fit.channel import position_channel, pressure_fine
+from twin.fit.fitting import fit
+from twin.fit.space import ACCUSED_SPREAD, make_space
+from twin.fit.trial import Trial
+from twin.plant import Plant
+
+#: Of what the re-tuned design leaves of the position when it is driven by the reading: the most that it leaves when
+#: driven by the model; and by how many noise variances that is less, at least.
+_FOLLOWS, _CLEARLY = 0.75, 0.5
+
+
+def driven_by_model(plant: Plant, trials: Sequence[Trial]) -> tuple[Trial, ...]:
+    """The trials with the pressure that `plant` makes of their commands, whatever was read."""
+    return tuple(trial.with_pressure(pressure_fine(plant, trial)) for trial in trials)
+
+
+def gauge_wanders(case: Case, by_reading: Sequence[Trial], by_model: Sequence[Trial]) -> bool:
+    """Whether the stem followed the model's pressure and not what was read; the trials differ in nothing else."""
+    read, modelled = (left_of_position(case, trials) for trials in (by_reading, by_model))
+    return modelled < _FOLLOWS * read and modelled < read - _CLEARLY
+
+
+def gauge_note(case: Case) -> DataNote:
+    """What to say of it."""
+    return DataNote(
+        what="the pressure reading strays in a way that the stem does not follow",
+        handled="taken as the gauge's own error: the position is held to the pressure that the converter's model makes "
+        "of the commands; another gauge on the same line would tell",
+        rows=sum(r.n for r in case.recordings),
+        first_row=None,
+    )
+
+
+def left_of_position(case: Case, trials: Sequence[Trial]) -> float:
+    """Mean square that the design leaves of the position with its numbers re-tuned, noise = 1."""
+    channel = position_channel(trials, case.sigma_y)
+    space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
+    return fit(channel, space, [np.zeros(len(space.unknowns))]).mse
