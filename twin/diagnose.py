@@ -32,7 +32,7 @@ from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Known, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
-from twin.refresh import refreshed_together
+from twin.refresh import new_only, refreshed_together
 from twin.repeatable import differ_for_a_cause, leaves_what_rests
 from twin.rounding import lacking_codes, rounding_down
 from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
@@ -209,8 +209,10 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     on_change = sensing.band > 0.0
     reported, noise = (sensing.inserted(), as_reported(noise)) if on_change else ((), noise)
     inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))
+    together = sensing.held and all(refreshed_together(r) for r in recordings)
+    said = [new_only(r) for r in recordings] if together else recordings
     seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
-    case = make_case(recordings, design, inserted, *seen)
+    case = make_case(said, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)
     late, late_notes = late_commands(look_at(known.case)[0])
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))

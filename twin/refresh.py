@@ -8,7 +8,7 @@ the line of a record of T seconds is 1/T wide, and its top is known better than 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import numpy.typing as npt
@@ -98,6 +98,18 @@ def refreshed_together(recording: Recording) -> bool:
     if not held.any() or held.all():
         return False
     return bool(np.mean(same[held]) - np.mean(same[~held]) > _TOGETHER)
+
+
+def new_only(recording: Recording) -> Recording:
+    """The recording without the readings that repeat both the position and the pressure of the row before.
+
+    They say nothing that was not said, and were true at another time.
+    """
+    assert recording.pressure is not None
+    repeated = (np.diff(recording.position) == 0.0) & (np.diff(recording.pressure) == 0.0)
+    old = np.concatenate([[False], repeated])
+    position, pressure = (np.where(old, np.nan, values) for values in (recording.position, recording.pressure))
+    return replace(recording, position=position, pressure=pressure)
 
 
 def _lateness(t: FloatArray, y: FloatArray, width: float) -> FloatArray:

@@ -17,7 +17,7 @@ from twin.choose.decide import DecisionRules
 from twin.choose.search import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.plant import Inserted, Plant, reading_response
-from twin.refresh import fresh_rows, freshness, refreshed_together
+from twin.refresh import fresh_rows, freshness, new_only, refreshed_together
 from twin.simulate import simulate_recording
 from twin.stages import judge
 from twin.thin import look_at
@@ -116,3 +116,25 @@ def test_a_buffered_reading_is_as_old_as_it_waited() -> None:
     fresh = freshness(seen)
     late = (0.01 * fresh.taken_s - reading_response(c, grid, stem, fresh))[50:] / 0.01
     assert late == pytest.approx(np.full(350, 1.2), abs=1e-6)
+
+
+def through_one_converter() -> Recording:
+    """A creeping valve whose pressure and position are refreshed in the same rows, every six or so."""
+    record = a_record(Plant(DesignModel(), (CREEP,)), twice=True, n=2400)
+    assert record.pressure is not None
+    together = fresh_rows(held(record.position))
+    return replace(record, position=record.position[together], pressure=record.pressure[together])
+
+
+def test_of_what_one_slow_converter_repeats_only_the_new_counts() -> None:
+    recording = through_one_converter()
+    new = new_only(recording)
+    said = fresh_rows(recording.position) == np.arange(recording.n)
+    assert new.pressure is not None
+    assert np.isfinite(new.position).tolist() == said.tolist() == np.isfinite(new.pressure).tolist()
+    np.testing.assert_array_equal(new.position[said], recording.position[said])
+
+
+def test_a_pressure_held_with_the_position_is_no_gap_and_hides_no_cause() -> None:
+    found = diagnose([through_one_converter()], DesignModel(), (), Settings(search=SearchRules(most=1))).diagnosis
+    assert {c.name for c in found.causes} == {"stale_samples", "creep"}
