@@ -47,7 +47,9 @@ EP_QUICK = 29  # further flow of a quick exhaust per error beyond EP_CRACK, as a
 EP_CRACK = 30  # error from which a falling pressure has it [pressure]
 EP_MIXED_S = 31  # lag of what comes out of a dead time [s]
 EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port or a shut pilot shows it [-]; 0: nobody asks
-EP_COUNT = 33
+EP_DRIFTS = 33  # by how much the zero moves in the end [pressure]
+EP_DRIFTS_S = 34  # and with which time constant, from the beginning of each recording [s]
+EP_COUNT = 35
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -168,7 +170,7 @@ def neutral_ep() -> FloatArray:
 @cache  # made for each simulation, of which there are thousands
 def _ep() -> FloatArray:
     c = np.zeros(EP_COUNT)
-    c[[EP_GAIN, EP_REFILL_S, EP_PORT_UP, EP_PORT_DOWN]] = 1.0
+    c[[EP_GAIN, EP_REFILL_S, EP_PORT_UP, EP_PORT_DOWN, EP_DRIFTS_S]] = 1.0
     c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
     return c
 

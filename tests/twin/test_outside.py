@@ -25,7 +25,7 @@ from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response
-from twin.slots import S_JUMP, S_JUMP_S, S_ZERO
+from twin.slots import EP_DRIFTS, EP_DRIFTS_S, EP_ZERO, S_JUMP, S_JUMP_S, S_ZERO
 from twin.stages import driven_about
 from twin.timegrid import make_grid
 
@@ -51,6 +51,7 @@ def answered(*records: Recording) -> Outcome:
     [
         (with_form("lvdt_drift", "jump", 0.02, 0.43), "the zero of the reading jumps"),
         (with_form("dead_time", "rings", 0.35, 0.25), "the converter swings to its goal"),
+        (with_form("ep_calibration", "zero_drifts", 0.01, 0.06, 120.0), "the converter's zero drifts"),
         (with_form("nonlinear_spring", "snaps", 0.5, 0.45, 0.5), SNAPS),
         (with_form("nonlinear_spring", "stem_snaps", 0.7, 0.55, 0.5), SNAPS),
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),
@@ -63,9 +64,25 @@ def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: s
     assert words in found.statement
 
 
+def test_the_converters_zero_goes_where_it_settles() -> None:
+    """Under a constant command, against the lag of an exponential in closed form, on rows and on fine steps."""
+    time_s = 0.1 * np.arange(1500)
+    grid, settling_s, tau_s = make_grid(time_s, 0.02), 25.0, DESIGN.ep_tau_s
+    c = with_form("ep_calibration", "zero_drifts", 0.02, 0.3, settling_s).coefficients(150.0)
+    delayed = with_form("dead_time", "pure_delay", 1e-6).coefficients(150.0)
+    delayed.ep[[EP_ZERO, EP_DRIFTS, EP_DRIFTS_S]] = c.ep[[EP_ZERO, EP_DRIFTS, EP_DRIFTS_S]]
+    slow, fast = np.exp(-time_s / settling_s), np.exp(-time_s / tau_s)
+    expected = 0.32 - 0.3 * (settling_s * slow - tau_s * fast) / (settling_s - tau_s) - 0.02 * fast
+    for one in (c, delayed):
+        pressure = pressure_response(one, grid, np.full(1500, 8.0), 8.0)[grid.offsets]
+        np.testing.assert_allclose(pressure - 8.0, expected, atol=1.2e-3)
+
+
 @pytest.mark.thorough
 def test_what_it_resembles_is_named_as_before() -> None:
-    for name, form, values in (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,)), ORIFICE):
+    steady = ("ep_calibration", "gain_and_zero", (0.006, -0.06))
+    alike = (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,)), ORIFICE, steady)
+    for name, form, values in alike:
         found = answered(a_record(with_form(name, form, *values))).diagnosis
         assert [c.name for c in found.causes] == [name]
 
@@ -84,7 +101,15 @@ def test_no_rival_is_in_an_updated_model() -> None:
     rivals = {(e.name, f.name) for e in effects().values() for f in e.forms if f.outside}
     snaps = {("nonlinear_spring", "snaps"), ("nonlinear_spring", "stem_snaps")}
     alike = ("asymmetric_damping", "orifice_alike")
-    assert rivals == {("lvdt_drift", "jump"), ("lvdt_drift", "jump_each"), ("dead_time", "rings"), alike, *snaps}
+    drifts = ("ep_calibration", "zero_drifts")
+    assert rivals == {
+        ("lvdt_drift", "jump"),
+        ("lvdt_drift", "jump_each"),
+        ("dead_time", "rings"),
+        alike,
+        drifts,
+        *snaps,
+    }
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))
     assert not answered(record).model.effects
 

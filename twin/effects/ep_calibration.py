@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_GAIN, EP_ZERO
+from twin.slots import EP_DRIFTS, EP_DRIFTS_S, EP_GAIN, EP_ZERO
 
 _GAIN = Parameter(
     name="gain",
@@ -25,6 +25,26 @@ _ZERO = Parameter(
     scale=0.3,
     doc="pressure above the command at zero command",
 )
+_CHANGE = Parameter(
+    name="change",
+    kind="pressure",
+    lower=-2.0,
+    upper=2.0,
+    starts=(-0.05, 0.05),
+    scale=0.3,
+    doc="by how much the zero moves in the end",
+)
+_SETTLING = Parameter(
+    name="settling",
+    kind="time",
+    lower=10.0,
+    upper=3600.0,
+    starts=(60.0, 400.0),
+    scale=300.0,
+    doc="time constant with which it does, from the beginning of each recording",
+    neutral=300.0,
+    size=False,
+)
 
 
 def _both(c: Coefficients, values: Sequence[float]) -> None:
@@ -40,11 +60,23 @@ def _zero(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_ZERO] = values[0]
 
 
+def _drifts(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_ZERO, EP_DRIFTS, EP_DRIFTS_S]] = values
+
+
 EFFECT = Effect(
     name="ep_calibration",
     stage="ep",
     claim="Pressure settles away from the command: a gain error, a zero error, or both.",
-    equations="dp/dt = ((1 + gain) u + zero - p) / tau",
+    equations="dp/dt = ((1 + gain) u + zero - p) / tau; a zero that drifts is no calibration, only told from it: "
+    "zero + change (1 - exp(-t / settling))",
     source="IEC 61298-2, Process measurement and control devices, part 2: tests under reference conditions",
-    forms=(Form("zero", (_ZERO,), _zero), Form("gain", (_GAIN,), _gain), Form("gain_and_zero", (_GAIN, _ZERO), _both)),
+    forms=(
+        Form("zero", (_ZERO,), _zero),
+        Form("gain", (_GAIN,), _gain),
+        Form("gain_and_zero", (_GAIN, _ZERO), _both),
+        Form(
+            "zero_drifts", (_ZERO, _CHANGE, _SETTLING), _drifts, by_pressure=True, outside="the converter's zero drifts"
+        ),
+    ),
 )

@@ -19,6 +19,8 @@ from twin.slots import (
     EP_CHAMBER,
     EP_CLIP,
     EP_DEAD_S,
+    EP_DRIFTS,
+    EP_DRIFTS_S,
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
@@ -79,8 +81,8 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
     if c[EP_BAND_MODE] in (1.0, 2.0):
         source, goal = goal, np.empty(goal.size)
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
-    if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER:
-        goal = supplied(c[EP_ZERO] + c[EP_GAIN] * goal, c)
+    if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER or c[EP_DRIFTS] != 0.0:
+        goal = supplied(zero(c, time_s, offsets, goal.size, time_s[0]) + c[EP_GAIN] * goal, c)
     if c[EP_SLEW] < FOREVER:
         source, goal = goal, np.empty(size)
         _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
@@ -88,6 +90,15 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         source, goal = goal, np.empty(size)
         ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
     return goal
+
+
+def zero(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, size: int, began_s: float) -> float | FloatArray:
+    """Zero error of a converter, one that drifts: per row or fine, as `size` has it. `began_s`: when the drift did."""
+    if c[EP_DRIFTS] == 0.0:
+        return float(c[EP_ZERO])
+    at_s = time_s if size == time_s.size else np.interp(np.arange(size), offsets, time_s)
+    drifted: FloatArray = c[EP_ZERO] + c[EP_DRIFTS] * -np.expm1(-(at_s - began_s) / c[EP_DRIFTS_S])
+    return drifted
 
 
 def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:

@@ -19,6 +19,7 @@ from twin.kernels.ep import (
     bounded,
     supplied,
     through_ports,
+    zero,
 )
 from twin.kernels.ringing import ringing_pass
 from twin.slots import (
@@ -45,7 +46,7 @@ class Converter:
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
-        self._mixed = command
+        self._mixed, self._began_s = command, time_s
         self._bounded = bounded(c)
         self._aim, self._ringing = p0, np.array([p0, 0.0])
         self._sunk = np.zeros(1)
@@ -88,7 +89,7 @@ class Converter:
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
             self._held = float(goal[-1])
-        goal = supplied(c[EP_ZERO] + c[EP_GAIN] * goal, c)
+        goal = supplied(zero(c, time_s, offsets, goal.size, self._began_s) + c[EP_GAIN] * goal, c)
         if c[EP_SLEW] < FOREVER:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._aim = _slewed(time_s, source, offsets, float(c[EP_SLEW]), self._aim, goal)
