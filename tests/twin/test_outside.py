@@ -51,7 +51,10 @@ def answered(*records: Recording) -> Outcome:
     [
         (with_form("lvdt_drift", "jump", 0.02, 0.43), "the zero of the reading jumps"),
         (with_form("dead_time", "rings", 0.35, 0.25), "the converter swings to its goal"),
-        (with_form("ep_calibration", "zero_drifts", 0.01, 0.06, 120.0), "the converter's zero drifts"),
+        (
+            with_form("ep_calibration", "zero_drifts", 0.01, 0.06, 120.0),
+            "the zero of the converter or of its gauge drifts",
+        ),
         (with_form("nonlinear_spring", "snaps", 0.5, 0.45, 0.5), SNAPS),
         (with_form("nonlinear_spring", "stem_snaps", 0.7, 0.55, 0.5), SNAPS),
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),

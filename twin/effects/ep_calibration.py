@@ -76,7 +76,11 @@ EFFECT = Effect(
         Form("gain", (_GAIN,), _gain),
         Form("gain_and_zero", (_GAIN, _ZERO), _both),
         Form(
-            "zero_drifts", (_ZERO, _CHANGE, _SETTLING), _drifts, by_pressure=True, outside="the converter's zero drifts"
+            "zero_drifts",
+            (_ZERO, _CHANGE, _SETTLING),
+            _drifts,
+            by_pressure=True,
+            outside="the zero of the converter or of its gauge drifts",
         ),
     ),
 )
