@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from app.interval import share
+from app.marked_block import with_block
 from control.compare import Result, jobs
 from control.design import DesignModel
 from control.metrics import GOAL_PERCENT
@@ -117,6 +118,4 @@ def write(folder: Path, drawn: Stored, named: Stored) -> None:
     """Stores the trials and puts the block into the page."""
     (folder / FILE).write_text(json.dumps({"drawn": drawn, "named": named}) + "\n", encoding="utf-8")
     page = (folder / PAGE).read_text(encoding="utf-8")
-    before, _, rest = page.partition(BEGIN)
-    after = rest.partition(END)[2]
-    (folder / PAGE).write_text(f"{before}{BEGIN}\n{block(drawn, named)}\n{END}{after}", encoding="utf-8")
+    (folder / PAGE).write_text(with_block(page, BEGIN, block(drawn, named), END), encoding="utf-8")

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from app.interval import share
+from app.marked_block import with_block
 from control.compare import Job, jobs, true_valve
 from control.design import DesignModel
 from control.metrics import GOAL_PERCENT, Score, score
@@ -81,6 +82,4 @@ def write(folder: Path, stored: Stored) -> None:
     """Stores the trials and puts the block into the page."""
     (folder / FILE).write_text(json.dumps(stored) + "\n", encoding="utf-8")
     page = (folder / PAGE).read_text(encoding="utf-8")
-    before, _, rest = page.partition(BEGIN)
-    after = rest.partition(END)[2]
-    (folder / PAGE).write_text(f"{before}{BEGIN}\n{block(stored)}\n{END}{after}", encoding="utf-8")
+    (folder / PAGE).write_text(with_block(page, BEGIN, block(stored), END), encoding="utf-8")

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.exam_score import Answer, label_of, text
+from control.design import DesignModel, load_design
 
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
 _LIMIT_S = 900.0
@@ -92,12 +93,11 @@ def main() -> None:
     with ThreadPoolExecutor(options.processes) as pool:
         for path in pool.map(partial(answered, options.folder, options.out), cases):
             print(f"{path.stem} answered", file=sys.stderr, flush=True)
+    design = options.folder / "design.toml"
+    travel_in = (load_design(design) if design.exists() else DesignModel()).travel
     sealed = json.loads((options.folder / "SEALED.json").read_text(encoding="utf-8"))
-    answers = [
-        Answer(case, label_of(sealed[case]), json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")))
-        for case in cases
-    ]
-    print(text(answers))
+    said = {case: json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")) for case in cases}
+    print(text([Answer(case, label_of(sealed[case]), said[case], travel_in) for case in cases]))
 
 
 if __name__ == "__main__":

@@ -11,7 +11,6 @@ import numpy as np
 from app.blind.calibration import error, honest
 from app.blind.mark import Mark, mark
 from app.interval import share
-from control.design import DesignModel
 from sim_device.sealed import Cause, Label
 from twin.catalog import effects
 from twin.fit.numbers import NUMBERS
@@ -23,11 +22,15 @@ _NAMED = ("parameter", "effect", "effects")
 
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """A case with its truth and what was said (`diagnosis.json` with `seconds` and `unseen`, or an `error`)."""
+    """A case with its truth and what was said (`diagnosis.json` with `seconds` and `unseen`, or an `error`).
+
+    `travel_in`: the design's, of which the noise floor is a share.
+    """
 
     case: str
     label: Label
     said: Mapping[str, Any]
+    travel_in: float
 
     @property
     def mark(self) -> Mark:
@@ -48,7 +51,7 @@ class Answer:
         unseen, gap = self.said.get("unseen"), self.said["gap"]
         if unseen is None or self.label.kind == "none" or gap["noise_floor"] is None:
             return None
-        floor_in = 0.01 * float(gap["noise_floor"]) * DesignModel().travel
+        floor_in = 0.01 * float(gap["noise_floor"]) * self.travel_in
         before, after = unseen["before_in"], unseen["after_in"]
         return 1.0 - (after / before) ** 2 if before > floor_in else None
 
@@ -69,7 +72,8 @@ def text(answers: Sequence[Answer]) -> str:
     """The figures with their intervals, the row of the table in docs/calibration.md, and every miss."""
     good = [a for a in answers if "error" not in a.said]
     broken = [f"  {a.case}: ended in an error: {a.said['error']}" for a in answers if "error" in a.said]
-    return "\n".join([*_figures(good), "", _row(good), "", "misses:", *map(_miss, _wrong(good)), *broken])
+    figures = [*_figures(good), "", _row(good)] if good else ["  no case was answered"]
+    return "\n".join([*figures, "", "misses:", *map(_miss, _wrong(good)), *broken])
 
 
 def _of(answers: Sequence[Answer], *kinds: str) -> list[Answer]:

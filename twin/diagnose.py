@@ -209,8 +209,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     on_change = sensing.band > 0.0
     reported, noise = (sensing.inserted(), as_reported(noise)) if on_change else ((), noise)
     inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))
-    together = sensing.held and all(refreshed_together(r) for r in recordings)
-    said = [new_only(r) for r in recordings] if together else recordings
+    said = [new_only(r) if sensing.held and refreshed_together(r) else r for r in recordings]
     seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
     case = make_case(said, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)

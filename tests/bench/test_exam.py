@@ -24,7 +24,7 @@ def answer(cls: str, truth: list[str], verdict: str, *named: tuple[str, str, flo
     """An answer that names causes as (name, stage, probability)."""
     causes = [{"name": n, "stage": stage, "probability": p} for n, stage, p in named]
     said = {"verdict": verdict, "causes": causes, "confusable": [], "ranking": [], "gap": GAP, "seconds": 9.0}
-    return Answer("case01", label_of({"cls": cls, "truth": truth}), said | {"where": {"stage": None}} | more)
+    return Answer("case01", label_of({"cls": cls, "truth": truth}), said | {"where": {"stage": None}} | more, 0.5)
 
 
 CREEP, DRIFT = ("creep", "actuator", 0.97), ("lvdt_drift", "sensor", 0.6)
@@ -46,6 +46,18 @@ def test_counts_are_strictly_by_the_names() -> None:
     assert "| 9 | 5 of 9 | 1 of 2 | 4 of 5 | 5 of 5 | 1 of 2 | 1 of 2 | 1.14 |" in said
     assert "true of those said with 0.96 or more: 4 of 6" in said
     assert "closure on an unseen record: median 0.9900" in said
+
+
+def test_what_the_design_misses_by_less_than_the_floor_has_no_closure() -> None:
+    """The floor is a share of the design's own travel: 0.2 % of 0.5 in."""
+    unseen = [{"before_in": before_in, "after_in": 0.0} for before_in in (0.00099, 0.00101)]
+    found = [answer("single", ["creep"], "effect", CREEP, unseen=one).closure for one in unseen]
+    assert found == [None, 1.0]
+    assert answer("healthy", [], "no_gap", unseen=unseen[1]).closure is None
+
+
+def test_without_a_single_answer_the_errors_are_told() -> None:
+    assert "row 3: no number" in text([answer("single", ["creep"], "", error="case.csv: row 3: no number")])
 
 
 def test_a_set_that_holds_the_truth_is_counted_beside() -> None:

@@ -46,7 +46,8 @@ class Converter:
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
-        self._mixed, self._began_s = command, time_s
+        self._mixed = command
+        self._began_s = time_s
         self._bounded = bounded(c)
         self._aim, self._ringing = p0, np.array([p0, 0.0])
         self._sunk = np.zeros(1)
