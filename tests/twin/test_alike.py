@@ -88,6 +88,7 @@ def test_one_of_three_that_are_alike_is_named_though_none_is_likely() -> None:
     assert spoken([apart], Weights(), seen=True)[0].names == ()
 
 
+@pytest.mark.thorough
 def test_a_second_cause_stays_though_another_could_stand_in_its_place() -> None:
     """A filter, and a span that a stop and a stiffer spring imitate: without it a wrong cause would be left."""
     dice, n = np.random.default_rng(3), 1500

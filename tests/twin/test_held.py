@@ -135,6 +135,7 @@ def test_of_what_one_slow_converter_repeats_only_the_new_counts() -> None:
     np.testing.assert_array_equal(new.position[said], recording.position[said])
 
 
+@pytest.mark.thorough
 def test_a_pressure_held_with_the_position_is_no_gap_and_hides_no_cause() -> None:
     found = diagnose([through_one_converter()], DesignModel(), (), Settings(search=SearchRules(most=1))).diagnosis
     assert {c.name for c in found.causes} == {"stale_samples", "creep"}
