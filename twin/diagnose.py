@@ -114,7 +114,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials, settings.seed)
     itself = unrest(case, everything, settings.margin.position)
-    known.notes += [*itself.notes(case), *([gauge_note(case)] if result.astray else [])]
+    known.notes += [*itself.notes(case), *([gauge_note(case, result.denied)] if result.astray else [])]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
     hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed)

@@ -21,7 +21,7 @@ from twin.fit.smooth import noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
 from twin.plant import Plant
-from twin.witness import driven_by_model, gauge_wanders
+from twin.witness import denied, driven_by_model, gauge_wanders
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25
@@ -34,13 +34,15 @@ Watch = Callable[[Searcher], None]
 class StageResult:
     """Decisions per channel ("pressure" and "position", or "chain" alone) and the plant they add up to.
 
-    `astray`: the pressure was read, but the stem did not follow what was read (see `twin.witness`).
+    `astray`: the pressure was read, but the stem did not follow what was read (see `twin.witness`); `denied`: the
+    causes in which its model of the converter had, all the same, explained the reading.
     """
 
     case: Case
     decisions: tuple[Decision, ...]
     trials: tuple[Trial, ...]
     astray: bool = False
+    denied: tuple[str, ...] = ()
 
     @property
     def causes(self) -> tuple[str, ...]:
@@ -79,13 +81,23 @@ def judge(
         return StageResult(case, (_judge(case, channel, search, rules, progress, watch),), case.trials)
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     first = formed_by_stem(case, first, rules)
-    trials, modelled = drive_by_measured(case, first), driven_by_model(_believed(first), case.trials)
-    astray = gauge_wanders(case, trials, modelled)
-    trials = modelled if astray else trials
+    first, trials, astray, against = _by_witness(case, first)
     channel = _sharp(case, position_channel(trials, case.sigma_y))
     floor = 1.0 if astray else 1.0 + pressure_doubt(case, channel, first)
     second = _judge(case, channel, search, rules, progress, watch, floor)
-    return StageResult(case, (first, second), trials, astray)
+    return StageResult(case, (first, second), trials, astray, against)
+
+
+def _by_witness(case: Case, first: Decision) -> tuple[Decision, tuple[Trial, ...], bool, tuple[str, ...]]:
+    """The decision on the pressure after the stem was heard, what drives the valve, and `astray` and `denied` of it."""
+    read, modelled = drive_by_measured(case, first), driven_by_model(_believed(first), case.trials)
+    if first.names:
+        designed = driven_by_model(first.findings.none.plant, case.trials)
+        if denied(case, (read, modelled), designed):
+            silent = replace(first, accepted=first.findings.none, explained=False, rest=1.0)
+            return silent, designed, True, first.names
+    astray = gauge_wanders(case, read, modelled)
+    return first, modelled if astray else read, astray, ()
 
 
 def driven_again(case: Case, result: StageResult) -> tuple[Trial, ...]:

@@ -25,6 +25,12 @@ def statement(diagnosis: Diagnosis) -> str:
             f"and the readings' own noise is {g.noise_floor:.2g} %{_at_most(diagnosis)}."
         )
     if diagnosis.verdict == "unexplained":
+        if diagnosis.residual_signature.get("signal") == "pressure" and g.before <= _LIKE * g.noise_floor:
+            return (
+                "Unexplained: it is the pressure reading that is off; the design predicts the stem to "
+                f"{g.before:.2g} % of travel (noise {g.noise_floor:.2g} %). None of the known effects accounts for it"
+                f"{_looks_like(diagnosis)}."
+            )
         return (
             f"Unexplained: the design is off by {g.before:.2g} % of travel ({g.retuned:.2g} % re-tuned, noise "
             f"{g.noise_floor:.2g} %), and none of the known effects accounts for it{_looks_like(diagnosis)}."

@@ -45,7 +45,7 @@ def residual_signature(
     if rival is not None:
         found["looks_like"] = _looks_like(case, rival)
     elif strays(result):
-        found["looks_like"] = {"what": "the pressure gauge itself strayed, because the stem did not follow it"}
+        found["looks_like"] = {"what": _gauge(result)}
     if loud is not None:
         found["does_not_repeat"] = {
             "signal": loud.signal,
@@ -57,6 +57,13 @@ def residual_signature(
         unit = case.scales.position_unit if swing.signal == "position" else case.scales.pressure_unit
         found["swings"] = {**asdict(swing), "unit": unit}
     return found
+
+
+def _gauge(result: StageResult) -> str:
+    """What the pressure gauge itself did, in words."""
+    if not result.denied:
+        return "the pressure gauge itself strayed, because the stem did not follow it"
+    return f"the pressure gauge itself adds {' and '.join(result.denied)}: the stem went as if the converter had none"
 
 
 def _looks_like(case: Case, decision: Decision) -> dict[str, object]:

@@ -98,7 +98,8 @@ def _minor(result: StageResult, decision: Decision, ep_share: float) -> bool:
 
 def strays(result: StageResult) -> bool:
     """Whether the pressure is clearly off, and the stem says that it is the gauge (see `twin.witness`)."""
-    return result.astray and result.decisions[0].findings.none.mse > CLEAR**2 * result.decisions[0].floor
+    clear = bool(result.denied) or result.decisions[0].findings.none.mse > CLEAR**2 * result.decisions[0].floor
+    return result.astray and clear
 
 
 def _comes_back(decision: Decision) -> bool:

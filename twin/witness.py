@@ -12,6 +12,7 @@ import numpy as np
 
 from logs.recording import DataNote
 from twin.case import Case
+from twin.choose.trim import SLIGHT
 from twin.fit.channel import position_channel, pressure_fine
 from twin.fit.fitting import fit
 from twin.fit.space import ACCUSED_SPREAD, make_space
@@ -34,10 +35,26 @@ def gauge_wanders(case: Case, by_reading: Sequence[Trial], by_model: Sequence[Tr
     return modelled < _FOLLOWS * read and modelled < read - _CLEARLY
 
 
-def gauge_note(case: Case) -> DataNote:
-    """What to say of it."""
+def denied(case: Case, found: Sequence[Sequence[Trial]], as_designed: Sequence[Trial]) -> bool:
+    """Whether the stem went as if the converter were its design, although the reading has a cause that explains it.
+
+    `found`: the trials driven by the reading, and by the converter's model with that cause; `as_designed`: by the
+    converter without it. What the gauge does itself, a lag of its tube, looks in its reading like a converter's cause.
+    Only where the valve passes for healthy when the design drives it: what is wrong behind the pressure may by chance
+    make up for a part of what is wrong before it.
+    """
+    designed = left_of_position(case, as_designed)
+    if designed > SLIGHT:
+        return False
+    least = min(left_of_position(case, trials) for trials in found)
+    return designed < _FOLLOWS * least and designed < least - _CLEARLY
+
+
+def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:
+    """What to say of it. `against`: causes that the reading has, and the stem denies."""
+    like = f" (by itself it would be {' and '.join(against)})" if against else ""
     return DataNote(
-        what="the pressure reading strays in a way that the stem does not follow",
+        what=f"the pressure reading strays in a way that the stem does not follow{like}",
         handled="taken as the gauge's own error: the position is held to the pressure that the converter's model makes "
         "of the commands; another gauge on the same line would tell",
         rows=sum(r.n for r in case.recordings),

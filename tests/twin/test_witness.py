@@ -28,7 +28,8 @@ from twin.form_by_stem import formed_by_stem
 from twin.plant import Inserted, Plant
 from twin.simulate import simulate_recording
 from twin.stages import driven_about, judge
-from twin.witness import driven_by_model, gauge_wanders
+from twin.verdict import strays
+from twin.witness import denied, driven_by_model, gauge_wanders
 
 DESIGN = DesignModel()
 GAUGE_PSI, READING_IN = 0.03, 1.5e-4
@@ -72,6 +73,52 @@ def test_a_straying_gauge_is_no_gap_of_the_stem_and_is_said(gauge_psi: float, ve
     assert found.verdict == verdict
     assert any("the stem does not follow" in note.what for note in found.data_quality)
     assert ("the pressure gauge itself strayed" in found.statement) is (verdict == "unexplained")
+
+
+LATE = Inserted("dead_time", effect("dead_time").form("pure_delay"), (0.3,))
+
+
+def late(gauge: bool) -> Recording:
+    """A valve whose pressure gauge is late, or whose converter is."""
+    record = a_record(Plant(DESIGN))
+    pressure, position = simulate_recording(Plant(DESIGN, (LATE,)), record)
+    if gauge:
+        _, position = simulate_recording(Plant(DESIGN), record)
+    return read(replace(record, pressure=pressure, position=position), 0.01)
+
+
+@pytest.mark.parametrize("gauge", [True, False])
+def test_a_cause_that_the_reading_has_and_the_stem_has_not_is_the_gauges(gauge: bool) -> None:
+    case = make_case([late(gauge)], DESIGN)
+    with_it, without = (driven_by_model(Plant(DESIGN, i), case.trials) for i in ((LATE,), ()))
+    assert denied(case, (with_it, with_it), without) is gauge
+    assert denied(case, (with_it, without), without) is False  # as good by what was found: nothing to deny
+
+
+def test_the_stem_denies_nothing_where_something_is_wrong_behind_the_pressure() -> None:
+    record = late(gauge=True)
+    swung = record.position + 0.004 * slow(record.n, 3)
+    case = make_case([replace(record, position=swung)], DESIGN)
+    with_it, without = (driven_by_model(Plant(DESIGN, i), case.trials) for i in ((LATE,), ()))
+    assert denied(case, (with_it, with_it), without) is False
+
+
+def test_a_late_gauge_is_judged_by_the_stem() -> None:
+    case = make_case([late(gauge=True)], DESIGN)
+    result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
+    assert result.astray
+    assert result.denied == ("dead_time",)
+    assert result.causes == ()
+    assert strays(result)
+
+
+@pytest.mark.thorough
+def test_a_late_gauge_is_said_in_words() -> None:
+    found = diagnose([late(gauge=True)], DESIGN, (), UP_TO_TWO).diagnosis
+    assert (found.verdict, found.causes) == ("unexplained", ())
+    assert "the pressure reading that is off" in found.statement
+    assert "the pressure gauge itself adds dead_time" in found.statement
+    assert any("by itself it would be dead_time" in note.what for note in found.data_quality)
 
 
 @cache
