@@ -96,7 +96,7 @@ def _by_witness(case: Case, first: Decision) -> tuple[Decision, tuple[Trial, ...
         if denied(case, (read, modelled), designed):
             silent = replace(first, accepted=first.findings.none, explained=False, rest=1.0)
             return silent, designed, True, first.names
-    astray = gauge_wanders(case, read, modelled)
+    astray = gauge_wanders(case, read, modelled, drive_by_measured(case, first, careful=False))
     return first, modelled if astray else read, astray, ()
 
 

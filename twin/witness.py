@@ -20,8 +20,9 @@ from twin.fit.trial import Trial
 from twin.plant import Plant
 
 #: Of what the re-tuned design leaves of the position when it is driven by the reading: the most that it leaves when
-#: driven by the model; and by how many noise variances that is less, at least.
-_FOLLOWS, _CLEARLY = 0.75, 0.5
+#: driven by the model; and by how many noise variances that is less, at least. By how many it may leave more, and
+#: does as well.
+_FOLLOWS, _CLEARLY, _AS_WELL = 0.75, 0.5, 0.1
 
 
 def driven_by_model(plant: Plant, trials: Sequence[Trial]) -> tuple[Trial, ...]:
@@ -29,9 +30,24 @@ def driven_by_model(plant: Plant, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     return tuple(trial.with_pressure(pressure_fine(plant, trial)) for trial in trials)
 
 
-def gauge_wanders(case: Case, by_reading: Sequence[Trial], by_model: Sequence[Trial]) -> bool:
-    """Whether the stem followed the model's pressure and not what was read; the trials differ in nothing else."""
+def gauge_wanders(
+    case: Case, by_reading: Sequence[Trial], by_model: Sequence[Trial], believing: Sequence[Trial] | None = None
+) -> bool:
+    """Whether the stem followed the model's pressure and not what was read; the trials differ in nothing else.
+
+    `by_reading`: driven by what stands out of the reading's noise; `believing`: by all that the smoothed reading has.
+    Where the stem denies the latter, and goes with the model as well as with what stands out, what is left is noise.
+    """
     read, modelled = (left_of_position(case, trials) for trials in (by_reading, by_model))
+    if _denies(modelled, read):
+        return True
+    if believing is None or modelled > read + _AS_WELL:
+        return False
+    return _denies(modelled, left_of_position(case, believing))
+
+
+def _denies(modelled: float, read: float) -> bool:
+    """Whether a pressure leaves clearly less of the position than another."""
     return modelled < _FOLLOWS * read and modelled < read - _CLEARLY
 
 
@@ -46,8 +62,7 @@ def denied(case: Case, found: Sequence[Sequence[Trial]], as_designed: Sequence[T
     designed = left_of_position(case, as_designed)
     if designed > SLIGHT:
         return False
-    least = min(left_of_position(case, trials) for trials in found)
-    return designed < _FOLLOWS * least and designed < least - _CLEARLY
+    return _denies(designed, min(left_of_position(case, trials) for trials in found))
 
 
 def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:

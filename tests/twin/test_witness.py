@@ -36,9 +36,9 @@ GAUGE_PSI, READING_IN = 0.03, 1.5e-4
 PLAY = Inserted("ep_deadband", effect("ep_deadband").form("play"), (0.018,))
 
 
-def slow(n: int, seed: int) -> FloatArray:
-    """Unrest of unit deviation within some five seconds."""
-    wave = gaussian_filter1d(np.random.default_rng(seed).normal(0.0, 1.0, n), 12.0)
+def slow(n: int, seed: int, rows: float = 12.0) -> FloatArray:
+    """Unrest of unit deviation, made of bells of so many rows: within some five seconds unless told otherwise."""
+    wave = gaussian_filter1d(np.random.default_rng(seed).normal(0.0, 1.0, n), rows)
     return np.asarray(wave / wave.std())
 
 
@@ -50,12 +50,12 @@ def read(record: Recording, gauge_psi: float) -> Recording:
     return replace(record, pressure=pressure, position=record.position + dice.normal(0.0, READING_IN, record.n))
 
 
-def straying(gauge_psi: float = 0.0, air_psi: float = 0.0) -> Recording:
+def straying(gauge_psi: float = 0.0, air_psi: float = 0.0, rows: float = 12.0) -> Recording:
     """A healthy valve whose pressure gauge strays slowly, or whose pressure really does."""
     healthy = a_record(Plant(DESIGN))
-    command = healthy.command + air_psi * slow(healthy.n, 7)
+    command = healthy.command + air_psi * slow(healthy.n, 7, rows)
     pressure, position = simulate_recording(Plant(DESIGN), replace(healthy, command=command))
-    strays = pressure + gauge_psi * slow(healthy.n, 7)
+    strays = pressure + gauge_psi * slow(healthy.n, 7, rows)
     return replace(read(replace(healthy, pressure=strays, position=position), 0.004), command=healthy.command)
 
 
@@ -64,6 +64,23 @@ def test_what_the_stem_does_not_follow_is_the_gauge(where: dict[str, float], gau
     case = make_case([straying(**where)], DESIGN)
     by_reading = driven_about(case.base, case)
     assert gauge_wanders(case, by_reading, driven_by_model(case.base, case.trials)) is gauge
+
+
+@pytest.mark.parametrize(("where", "gauge"), [({"gauge_psi": 0.006}, True), ({"air_psi": 0.006}, False), ({}, False)])
+def test_a_slow_noise_that_the_stem_denies_raises_no_floor(where: dict[str, float], gauge: bool) -> None:
+    """What stands out of the noise says little; all of the reading moves a stem that the real one does not follow."""
+    case = make_case([straying(**where, rows=1.5)], DESIGN)
+    by_reading, modelled = driven_about(case.base, case), driven_by_model(case.base, case.trials)
+    assert not gauge_wanders(case, by_reading, modelled)
+    assert gauge_wanders(case, by_reading, modelled, driven_about(case.base, case, careful=False)) is gauge
+
+
+def test_a_search_asks_the_stem_about_all_of_the_reading() -> None:
+    case = make_case([straying(gauge_psi=0.006, rows=1.5)], DESIGN)
+    result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
+    assert result.astray
+    assert result.denied == ()
+    assert result.decisions[-1].floor == 1.0
 
 
 @pytest.mark.thorough
