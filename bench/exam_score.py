@@ -11,6 +11,7 @@ import numpy as np
 from app.blind.calibration import error, honest
 from app.blind.mark import Mark, mark
 from app.interval import share
+from hal.errors import BadInput
 from sim_device.sealed import Cause, Label
 from twin.catalog import effects
 from twin.fit.numbers import NUMBERS
@@ -56,11 +57,22 @@ class Answer:
         return 1.0 - (after / before) ** 2 if before > floor_in else None
 
 
-def label_of(sealed: Mapping[str, Any]) -> Label:
-    """The label of one case of `SEALED.json`. Raises: `KeyError` for a class or a name that nobody knows."""
+def label_of(case: str, sealed: Mapping[str, Any]) -> Label:
+    """The label of one case of `SEALED.json`. Raises: `BadInput` for a class or a name that nobody knows."""
+    if sealed["cls"] not in KINDS:
+        raise BadInput(f"SEALED.json: {case}: class {sealed['cls']!r} is none of {', '.join(KINDS)}")
     kind = KINDS[sealed["cls"]]
+    unknown = [name for name in sealed["truth"] if kind != "outsider" and not _known(name)]
+    if unknown:
+        raise BadInput(
+            f"SEALED.json: {case}: cause {unknown[0]!r} is not in the vocabulary (lostmotion explain lists it)"
+        )
     causes = tuple(Cause(name, _stage(name) if kind != "outsider" else "", "", 0.0, "", "") for name in sealed["truth"])
     return Label(kind, "stranger", 0, causes)
+
+
+def _known(name: str) -> bool:
+    return name.removeprefix("parameter:") in NUMBERS if name.startswith("parameter:") else name in effects()
 
 
 def _stage(name: str) -> str:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ import pytest
 from bench import exam
 from bench.exam_score import Answer, label_of, text
 from control.design import DesignModel, save_design
+from hal.errors import BadInput
 from logs.recording import Recording
 from twin.catalog import effect
 from twin.plant import Inserted, Plant
@@ -24,7 +27,9 @@ def answer(cls: str, truth: list[str], verdict: str, *named: tuple[str, str, flo
     """An answer that names causes as (name, stage, probability)."""
     causes = [{"name": n, "stage": stage, "probability": p} for n, stage, p in named]
     said = {"verdict": verdict, "causes": causes, "confusable": [], "ranking": [], "gap": GAP, "seconds": 9.0}
-    return Answer("case01", label_of({"cls": cls, "truth": truth}), said | {"where": {"stage": None}} | more, 0.5)
+    return Answer(
+        "case01", label_of("case01", {"cls": cls, "truth": truth}), said | {"where": {"stage": None}} | more, 0.5
+    )
 
 
 CREEP, DRIFT = ("creep", "actuator", 0.97), ("lvdt_drift", "sensor", 0.6)
@@ -74,12 +79,25 @@ def test_what_is_wrong_is_listed_with_what_was_said() -> None:
 
 @pytest.mark.parametrize(("name", "stage"), [("parameter:ep_tau", "ep"), ("stiction", "actuator")])
 def test_the_stage_is_the_vocabularys(name: str, stage: str) -> None:
-    assert [cause.stage for cause in label_of({"cls": "single", "truth": [name]}).causes] == [stage]
+    assert [cause.stage for cause in label_of("case01", {"cls": "single", "truth": [name]}).causes] == [stage]
 
 
-def test_a_name_that_nobody_knows_is_an_error() -> None:
-    with pytest.raises(KeyError, match="sticktion"):
-        label_of({"cls": "single", "truth": ["sticktion"]})
+@pytest.mark.parametrize(
+    ("sealed", "words"),
+    [
+        ({"cls": "single", "truth": ["sticktion"]}, "case07: cause 'sticktion' is not in the vocabulary"),
+        ({"cls": "number", "truth": ["parameter:dead_band"]}, "case07: cause 'parameter:dead_band' is not in"),
+        ({"cls": "nogap", "truth": []}, "case07: class 'nogap' is none of healthy, number"),
+    ],
+)
+def test_a_name_that_nobody_knows_is_an_error(sealed: dict[str, Any], words: str) -> None:
+    with pytest.raises(BadInput, match=words):
+        label_of("case07", sealed)
+
+
+def test_an_analogue_reading_is_compared_with_a_model_without_what_is_digital() -> None:
+    design = replace(DesignModel(), effects={"sensor_quantization": {"step": 0.01}, "creep": {"share": 0.1}})
+    assert exam._analogue(design).effects == {"creep": {"share": 0.1}}
 
 
 def write(path: Path, plant: Plant, seed: int, noisy: bool) -> np.ndarray:
@@ -110,8 +128,24 @@ def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) ->
     with pytest.raises(FileNotFoundError):  # no labels yet: the answers are there all the same
         exam.main()
     assert sorted(path.name for path in out.glob("*.json")) == ["case01.json", "case02.json"]
+    (folder / "SEALED.json").write_text(json.dumps(sealed | {"case02": {"cls": "odd", "truth": []}}), encoding="utf-8")
+    with pytest.raises(SystemExit, match="case02: class 'odd'"):
+        exam.main()
     (folder / "SEALED.json").write_text(json.dumps(sealed), encoding="utf-8")
     exam.main()
     said = capsys.readouterr().out
     assert "| 2 | 2 of 2 | 1 of 1 | 1 of 1 | 1 of 1 | 0 of 0 | 0 of 0 |" in said
     assert "closure on an unseen record: median 0.99" in said or "median 1.0" in said
+
+
+def test_an_unseen_record_that_cannot_be_simulated_is_told_and_has_no_closure(tmp_path: Path, capsys) -> None:
+    folder, out = tmp_path / "sealed", tmp_path / "answers"
+    out.mkdir()
+    for path in (folder / "design.toml", out / "model.toml"):
+        path.parent.mkdir(exist_ok=True)
+        save_design(DesignModel(), path)
+    reading_in = write(folder / "unseen" / "case01.csv", Plant(DesignModel()), 2, noisy=False)
+    np.savez(folder / "unseen" / "case01.npz", x_analog=reading_in)
+    (folder / "unseen" / "case01.csv").write_text("time_s,position_in\n0.0,0.1\n", encoding="utf-8")
+    assert exam._unseen(folder, out, "case01") is None
+    assert "case01: the unseen record cannot be simulated" in capsys.readouterr().err
