@@ -11,7 +11,7 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.reform import lays_open
-from twin.choose.trim import LIKELY, belief
+from twin.choose.trim import doubtful
 from twin.closure import rms
 from twin.diagnosis import Verdict
 from twin.fit.channel import chain_channel
@@ -118,11 +118,11 @@ def upheld(
         return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
         return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
-    vain = after > NO_BETTER * before or _doubted(judgement)
+    vain = after > NO_BETTER * before or _doubted(judgement, exact)
     # how much an unmeasured pressure wandered by itself nobody knows
     hardly = HARDLY if apart else SLIGHT
     if before <= hardly * floor or (vain and before < SLIGHT * floor):
-        if (left := _named_only(judgement, shown)).causes and not _doubted(left):
+        if (left := _named_only(judgement, shown)).causes and not _doubted(left, exact):
             return parts, left
         verdict: Verdict = "unexplained" if disturbed else "no_gap"
         return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
@@ -142,10 +142,14 @@ def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judge
     return replace(parts, after=after), Judgement("unexplained", (), judgement.ranking, ())
 
 
-def _doubted(judgement: Judgement) -> bool:
-    """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not."""
+def _doubted(judgement: Judgement, exact: bool) -> bool:
+    """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not.
+
+    `exact`: all is explained to its noise.
+    """
     probability = {r.name: r.probability for r in judgement.ranking} | {c.name: c.probability for c in judgement.causes}
-    return max(belief(c.name, probability, judgement.alike.get(c.name, ())) for c in judgement.causes) < LIKELY
+    sets = judgement.confusable if exact else ()
+    return all(doubtful(c.name, probability, judgement.alike.get(c.name, ()), sets) for c in judgement.causes)
 
 
 def explained_to_noise(result: StageResult) -> bool:

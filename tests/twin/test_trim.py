@@ -6,10 +6,11 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+import pytest
 
 from twin.catalog import effect
 from twin.choose.decide import DecisionRules
-from twin.choose.trim import _instead
+from twin.choose.trim import _instead, doubtful
 from twin.fit.space import Cause
 
 
@@ -46,3 +47,19 @@ def test_an_effect_that_spares_the_numbers_or_explains_more_does() -> None:
     number, retuned = one("parameter:deadband", 1.24, 0.009), one("parameter:deadband", 1.20, 0.009)
     for better in (one("reduced_travel", 0.97, 0.009), one("reduced_travel", 0.97, 0.001)):
         assert best_instead(better, number, retuned) is better
+
+
+@pytest.mark.parametrize(
+    ("own", "rival", "here", "sets", "kept"),
+    [
+        (0.5, 0.1, (), (), True),
+        (0.44, 0.43, (), (("creep", "stiction"),), True),  # one of the two is sure
+        (0.44, 0.43, (), (), False),  # not explained to the noise: another may be behind it
+        (0.44, 0.30, (), (("creep", "stiction"),), False),  # a third may be
+        (0.44, 0.43, (), (("stiction", "creep"),), False),  # the set of another cause
+        (0.30, 0.30, ("stiction",), (("creep", "stiction"),), True),  # alike on this record
+        (0.20, 0.20, ("stiction",), (("creep", "stiction"),), False),  # ... and not counted twice
+    ],
+)
+def test_a_cause_is_doubtful_unless_it_or_one_of_two_is_likely(own, rival, here, sets, kept) -> None:
+    assert doubtful("creep", {"creep": own, "stiction": rival}, here, sets) is not kept

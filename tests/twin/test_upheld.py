@@ -12,7 +12,7 @@ from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.claims import hollow
 from twin.diagnosis import Cause as Named
-from twin.diagnosis import Estimate
+from twin.diagnosis import Estimate, Ranked
 from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit, fit
@@ -98,6 +98,13 @@ def test_a_cause_that_is_less_likely_than_not_is_not_named_alone() -> None:
     assert upheld(parts(3.0, 2.0, 0.2), doubted, 1.0, NOTHING_SEEN, True)[1].verdict == "unexplained"
     beside = replace(doubted, causes=(*NAMED.causes, replace(doubted.causes[0], name="stiction")))
     assert upheld(parts(3.0, 2.0, 0.2), beside, 1.0, NOTHING_SEEN, True)[1] is beside
+
+
+@pytest.mark.parametrize(("exact", "verdict"), [(True, "effect"), (False, "unexplained")])
+def test_one_of_two_that_share_all_belief_is_named_where_they_explain_all(exact: bool, verdict: str) -> None:
+    ranking = tuple(Ranked(name, 0.44, None) for name in ("creep", "stiction"))
+    halves = replace(NAMED, causes=(replace(NAMED.causes[0], probability=0.44),), ranking=ranking)
+    assert upheld(parts(3.0, 2.0, 0.2), halves, 1.0, NOTHING_SEEN, True, exact=exact)[1].verdict == verdict
 
 
 @pytest.mark.parametrize(

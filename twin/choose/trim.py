@@ -19,8 +19,8 @@ from twin.choose.reach import moved_square
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 
-#: A cause that is, with its twins, less likely than this is not named.
-LIKELY = 0.45
+#: A cause that is, with its twins, less likely than this is not named, unless one rival and it have as much as `BOTH`.
+LIKELY, BOTH = 0.45, 0.85
 #: Mean squared residual of the design, noise = 1, up to which a signal passes for healthy: 1.3 times the noise.
 SLIGHT = 1.69
 
@@ -33,6 +33,18 @@ def belief(name: str, probability: Mapping[str, float], here: Collection[str] = 
     one = effects().get(name)
     twins = {twin for names in one.same_as.values() for twin in names} if one is not None else set()
     return sum(probability.get(other, 0.0) for other in {name, *twins, *here})
+
+
+def doubtful(name: str, probability: Mapping[str, float], here: Collection[str], sets: Sequence[Sequence[str]]) -> bool:
+    """Whether naming a cause would be wrong more often than right: it is less likely than not, and no one of two.
+
+    `here`: as in `belief`; `sets`: as in `Weighed`. Where a cause and a single rival hold all of the belief, the two
+    are sure, and the one is named with its set.
+    """
+    believed = belief(name, probability, here)
+    rivals = [r for members in sets if members[0] == name for r in members[1:] if r not in here]
+    nearest = max((probability.get(rival, 0.0) for rival in rivals), default=0.0)
+    return believed < LIKELY and believed + nearest < BOTH
 
 
 def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
@@ -114,4 +126,6 @@ def _guess(decision: Decision, weights: Weights) -> bool:
     if len(decision.names) != 1:
         return False
     [name] = decision.names
-    return belief(name, weigh(decision, weights).probability, alike(decision, name)) < LIKELY
+    weighed = weigh(decision, weights)
+    sets = weighed.sets if decision.exact else ()
+    return doubtful(name, weighed.probability, alike(decision, name), sets)
