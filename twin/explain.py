@@ -104,7 +104,7 @@ def _response(plant: Plant, kind: str) -> tuple[FloatArray, FloatArray]:
     grid = make_grid(time_s, _STEP_S)
     c = plant.coefficients(float(time_s[-1]))
     pressure, stem = chain_response(c, grid, command, float(command[0]), 0.0, 0.0)
-    return pressure[grid.offsets], reading_response(c, grid, stem)
+    return pressure[grid.offsets], reading_response(c, grid, stem, pressure)
 
 
 @cache

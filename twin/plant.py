@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from twin.slots import (
     S_EARLY,
     S_GAIN,
     S_LATE_S,
+    S_PICKS,
+    S_PICKS_FROM,
     S_SEEN,
     S_TRAVEL,
     S_ZERO,
@@ -40,6 +43,7 @@ from twin.slots import (
 from twin.timegrid import TimeGrid
 
 _TABLE = 1025
+_Pressure = TypeVar("_Pressure", float, FloatArray)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,8 +113,10 @@ def stem_response(c: Coefficients, grid: TimeGrid, pressure: FloatArray, x0: flo
     return out
 
 
-def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: Freshness | None = None) -> FloatArray:
-    """Reading at the rows, shape (n,), from the stem on the fine grid.
+def reading_response(
+    c: Coefficients, grid: TimeGrid, stem: FloatArray, pressure: FloatArray, fresh: Freshness | None = None
+) -> FloatArray:
+    """Reading at the rows, shape (n,), from the stem and the pressure on the fine grid.
 
     `fresh`: how fresh each row's recorded reading is, for effects that go by it; without, one that is reported on
     change goes by its band.
@@ -119,10 +125,17 @@ def reading_response(c: Coefficients, grid: TimeGrid, stem: FloatArray, fresh: F
     if fresh is not None and c.sensor[S_SEEN] == 2.0:
         early_s = c.sensor[S_EARLY] * fresh.slack_s + c.sensor[S_LATE_S]
         taken_s = np.maximum(fresh.taken_s - early_s, 0.0)
+    if c.sensor[S_PICKS] != 0.0:
+        stem = stem + picked_up(c, pressure)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)
     if fresh is None and c.sensor[S_BAND] > 0.0:
         report_on_change(out, c.sensor[S_BAND])
     return out[fresh.rows] if fresh is not None and c.sensor[S_SEEN] == 1.0 else out
+
+
+def picked_up(c: Coefficients, pressure: _Pressure) -> _Pressure:
+    """What the reading picks up of the pressure [position], before its static curve."""
+    return float(c.sensor[S_PICKS]) * (pressure - float(c.sensor[S_PICKS_FROM]))
 
 
 def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]:

@@ -72,7 +72,7 @@ def simulate_recording(
     pressure, stem = chain_response(c, grid, recording.command, first.pressure, first.position, first.play)
     # a blank that is to be filled says nothing of when its readings are new
     fresh = freshness(recording) if c.sensor[S_SEEN] and np.diff(recording.position).any() else None
-    return pressure[grid.offsets], reading_response(c, grid, stem, fresh)
+    return pressure[grid.offsets], reading_response(c, grid, stem, pressure, fresh)
 
 
 def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
@@ -134,7 +134,7 @@ def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
     if not abs(before) > _OFF * plant.design.travel:
         return False
     at = stem_at(c, reading)
-    later = reading_response(c, cut, stem_response(c, cut, pressure, at, at))
+    later = reading_response(c, cut, stem_response(c, cut, pressure, at, at), pressure)
     return _median((head.position - later)[-_FIRST_ROWS:]) / before > _STAYS
 
 
@@ -197,8 +197,8 @@ def _miss(plant: Plant, head: Recording, grid: TimeGrid, start: Start) -> float:
     """Mean squared difference over the head, without its worst tenth, which may be false readings."""
     c = plant.coefficients(head.duration_s)
     c.sensor[S_CORE] = start.core
-    stem = chain_response(c, grid, head.command, start.pressure, start.position, start.play)[1]
-    reading = reading_response(c, grid, stem)
+    pressure, stem = chain_response(c, grid, head.command, start.pressure, start.position, start.play)
+    reading = reading_response(c, grid, stem, pressure)
     seen = np.isfinite(head.position)
     squares = np.sort((head.position[seen] - reading[seen]) ** 2)[: max(1, int(0.9 * np.count_nonzero(seen)))]
     return float(np.mean(squares)) if squares.size else 0.0

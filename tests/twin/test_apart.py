@@ -33,7 +33,7 @@ def written(part: tuple[int, int] | None, duration_s: float = 100.0) -> Coeffici
 def zeros(c: Coefficients, at_s: list[float], duration_s: float = 100.0) -> FloatArray:
     """What the reading of a stem at rest is off, at times in the recording."""
     grid = make_grid(np.linspace(0.0, duration_s, 501), 0.1)
-    off = reading_response(c, grid, np.full(grid.n_fine, 0.2)) - 0.2
+    off = reading_response(c, grid, np.full(grid.n_fine, 0.2), np.zeros(grid.n_fine)) - 0.2
     return np.interp(at_s, grid.time_s, off)
 
 

@@ -71,7 +71,9 @@ def response(
     grid = make_grid(time_s, 0.05 * scales.time)
     c = plant.coefficients(float(time_s[-1]), place)
     pressure = pressure_response(c, grid, command, float(command[0]))
-    return np.array([pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))])
+    return np.array(
+        [pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)]
+    )
 
 
 def typical(form: Form) -> list[float]:

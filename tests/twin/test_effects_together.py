@@ -35,7 +35,7 @@ def chain(inserted: list[Inserted]) -> tuple[FloatArray, FloatArray]:
     c = plant.coefficients(float(TIME_S[-1]))
     pressure = pressure_response(c, grid, COMMAND, float(COMMAND[0]))
     stem = stem_response(c, grid, pressure, 0.2, 0.2)
-    return stem, reading_response(c, grid, stem)
+    return stem, reading_response(c, grid, stem, pressure)
 
 
 @settings(max_examples=60, deadline=None)

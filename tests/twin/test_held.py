@@ -114,7 +114,7 @@ def test_a_buffered_reading_is_as_old_as_it_waited() -> None:
     grid, stem = make_grid(time_s, 0.02), 0.01 * np.linspace(0.0, 39.9, 1996)
     seen = Recording("r", time_s, np.zeros(400), np.repeat(0.01 * time_s[::5], 5))
     fresh = freshness(seen)
-    late = (0.01 * fresh.taken_s - reading_response(c, grid, stem, fresh))[50:] / 0.01
+    late = (0.01 * fresh.taken_s - reading_response(c, grid, stem, np.zeros_like(stem), fresh))[50:] / 0.01
     assert late == pytest.approx(np.full(350, 1.2), abs=1e-6)
 
 

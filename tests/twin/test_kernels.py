@@ -33,7 +33,9 @@ def run(plant: Plant, time_s: FloatArray, command: FloatArray, step_s: float, x0
     grid = make_grid(time_s, step_s)
     c = plant.coefficients(float(time_s[-1] - time_s[0]))
     pressure = pressure_response(c, grid, command, float(command[0]))
-    return np.array([pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, x0, x0))])
+    return np.array(
+        [pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, x0, x0), pressure)]
+    )
 
 
 def plant_with(name: str, form: str, *values: float) -> Plant:

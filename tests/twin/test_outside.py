@@ -20,11 +20,11 @@ from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.effect import Scales
-from twin.fit.channel import position_channel
+from twin.fit.channel import position_channel, predict_reading
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.place import Place
-from twin.plant import Inserted, Plant, pressure_response
+from twin.plant import Inserted, Plant, pressure_response, reading_response
 from twin.slots import EP_DRIFTS, EP_DRIFTS_S, EP_ZERO, S_JUMP, S_JUMP_S, S_ZERO
 from twin.stages import driven_about
 from twin.timegrid import make_grid
@@ -58,6 +58,7 @@ def answered(*records: Recording) -> Outcome:
         (with_form("nonlinear_spring", "snaps", 0.5, 0.45, 0.5), SNAPS),
         (with_form("nonlinear_spring", "stem_snaps", 0.7, 0.55, 0.5), SNAPS),
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),
+        (with_form("lvdt_calibration", "picks_up", 0.02, 0.0), "the reading picks up the pressure or the command"),
     ],
 )
 def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: str) -> None:
@@ -81,10 +82,32 @@ def test_the_converters_zero_goes_where_it_settles() -> None:
         np.testing.assert_allclose(pressure - 8.0, expected, atol=1.2e-3)
 
 
+def test_a_reading_picks_up_what_the_pressure_is_above_that_of_a_closing_stem() -> None:
+    """A stem that friction holds stands still, and its reading does not."""
+    time_s = 0.1 * np.arange(400)
+    grid = make_grid(time_s, 0.05)
+    pressure = np.interp(grid.offsets[-1] * np.linspace(0.0, 1.0, grid.n_fine), [0, grid.offsets[-1]], [8.0, 10.5])
+    c = with_form("lvdt_calibration", "picks_up", 0.05, 0.002).coefficients(40.0)
+    reading = reading_response(c, grid, np.full(grid.n_fine, 0.3), pressure)
+    expected = 0.302 + 0.05 * DESIGN.compliance * (pressure[grid.offsets] - DESIGN.a1)
+    np.testing.assert_allclose(reading, expected, atol=1e-12)
+
+
+def test_where_the_stem_begins_goes_by_what_its_reading_picks_up() -> None:
+    """A record that begins in the middle of the band: the stem is where the reading is, less what it picks up."""
+    record = a_record(Plant(DESIGN))
+    middle = replace(record, command=np.full(record.n, 9.0), pressure=np.full(record.n, 9.0))
+    plant = with_form("lvdt_calibration", "picks_up", 0.05, 0.0)
+    picked_in = 0.05 * DESIGN.compliance * (9.0 - DESIGN.a1)
+    case = make_case([replace(middle, position=np.full(record.n, 0.15 + picked_in))], DESIGN)
+    np.testing.assert_allclose(predict_reading(plant, case.trials[0]), 0.15 + picked_in, atol=1e-9)
+
+
 @pytest.mark.thorough
 def test_what_it_resembles_is_named_as_before() -> None:
     steady = ("ep_calibration", "gain_and_zero", (0.006, -0.06))
-    alike = (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,)), ORIFICE, steady)
+    spread = ("distributed_hysteresis", "uniform", (0.4,))
+    alike = (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,)), ORIFICE, steady, spread)
     for name, form, values in alike:
         found = answered(a_record(with_form(name, form, *values))).diagnosis
         assert [c.name for c in found.causes] == [name]
@@ -105,12 +128,14 @@ def test_no_rival_is_in_an_updated_model() -> None:
     snaps = {("nonlinear_spring", "snaps"), ("nonlinear_spring", "stem_snaps")}
     alike = ("asymmetric_damping", "orifice_alike")
     drifts = ("ep_calibration", "zero_drifts")
+    picks_up = ("lvdt_calibration", "picks_up")
     assert rivals == {
         ("lvdt_drift", "jump"),
         ("lvdt_drift", "jump_each"),
         ("dead_time", "rings"),
         alike,
         drifts,
+        picks_up,
         *snaps,
     }
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))

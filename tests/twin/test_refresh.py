@@ -22,7 +22,7 @@ def held_reading(period_s: float, phase: float, noise: float) -> tuple[FloatArra
     plant = Plant(DesignModel(), (Inserted("stale_samples", effect("stale_samples").forms[0], values),))
     grid, c = make_grid(time_s, 0.05), plant.coefficients(400.0)
     pressure = pressure_response(c, grid, command, float(command[0]))
-    reading = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))
+    reading = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)
     return time_s, reading + rng.normal(0.0, noise, reading.size)
 
 

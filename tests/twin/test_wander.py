@@ -35,7 +35,7 @@ def wandering(size_psi: float) -> Recording:
     pressure = settled + size_psi * np.interp(
         np.linspace(0.0, r.n - 1.0, settled.size), np.arange(r.n), slow / slow.std()
     )
-    position = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))
+    position = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)
     read = pressure[grid.offsets] + dice.normal(0.0, 5e-3, r.n)
     return replace(r, pressure=read, position=position + dice.normal(0.0, 6e-4, r.n))
 

@@ -28,7 +28,7 @@ def trial_of(plant: Plant, command: FloatArray, seed: int = 2) -> tuple[Trial, F
     grid = make_trial(blank, 0.05).grid
     c = plant.coefficients(float(time_s[-1]))
     pressure = pressure_response(c, grid, command, float(command[0]))
-    true = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0))
+    true = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)
     noisy = true + np.random.default_rng(seed).normal(0.0, SIGMA, true.size)
     recording = replace(blank, position=noisy, pressure=pressure[grid.offsets])
     return make_trial(recording, 0.05).with_pressure(pressure), true

@@ -15,7 +15,7 @@ import numpy as np
 from logs.recording import FloatArray, Recording
 from twin.chain import chain_response, takes_air
 from twin.fit.trial import Trial, concatenate
-from twin.plant import Plant, core_at, pressure_response, reading_response, stem_at, stem_response
+from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_response
 from twin.slots import S_CORE, V_REMEMBERS
 
 Predict = Callable[[Plant, Trial], FloatArray]
@@ -47,14 +47,15 @@ def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
 
 def _reading(plant: Plant, trial: Trial, pressure: FloatArray | None) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s, trial.place)
-    start, c.sensor[S_CORE] = stem_at(c, trial.start_position), core_at(c, trial.start_position)
-    play = start if trial.start_play is None else stem_at(c, trial.start_play)
+    picked = picked_up(c, trial.start_pressure)
+    start, c.sensor[S_CORE] = stem_at(c, trial.start_position - picked), core_at(c, trial.start_position - picked)
+    play = start if trial.start_play is None else stem_at(c, trial.start_play - picked)
     c.valve[V_REMEMBERS] = trial.remembers
     if pressure is None:
-        stem = chain_response(c, trial.grid, trial.recording.command, trial.start_pressure, start, play)[1]
+        pressure, stem = chain_response(c, trial.grid, trial.recording.command, trial.start_pressure, start, play)
     else:
         stem = stem_response(c, trial.grid, pressure, start, play)
-    return reading_response(c, trial.grid, stem, trial.fresh)
+    return reading_response(c, trial.grid, stem, pressure, trial.fresh)
 
 
 @dataclass(frozen=True, slots=True)

@@ -56,7 +56,7 @@ def predict(plant: Plant, bed: Bed, channel: str) -> FloatArray:
     """Pressure or reading at the rows of the bed, from a valve that is open and at rest."""
     c = plant.coefficients(bed.duration_s)
     pressure, stem = chain_response(c, bed.grid, bed.command, float(bed.command[0]), 0.0, 0.0)
-    return pressure[bed.grid.offsets] if channel == "pressure" else reading_response(c, bed.grid, stem)
+    return pressure[bed.grid.offsets] if channel == "pressure" else reading_response(c, bed.grid, stem, pressure)
 
 
 @dataclass(frozen=True, slots=True)
