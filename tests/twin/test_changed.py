@@ -48,6 +48,7 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
     assert sensor.values[0] == pytest.approx(0.5, abs=0.02)
 
 
+@pytest.mark.thorough
 def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
     found = attributed(result.case, result, ["sensor_lag"], 1)

@@ -90,6 +90,7 @@ def test_a_replay_by_the_clock_reads_what_was_taken_between_the_rows() -> None:
     assert errors["own_clock"] < 0.3 * errors["as_seen"]
 
 
+@pytest.mark.thorough
 def test_part_of_the_rows_keeps_what_is_known_of_them() -> None:
     record = a_record(Plant(DesignModel()), twice=False)
     t = record.time_s - record.time_s[0]

@@ -52,6 +52,7 @@ def test_both_are_named_and_the_floor_is_that_of_the_resting_reading(drifting: R
 
 
 @pytest.mark.thorough
+@pytest.mark.thorough
 def test_what_leaves_more_than_the_resting_noise_is_not_kept(
     drifting: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:

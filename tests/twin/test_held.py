@@ -66,6 +66,7 @@ def test_held_readings_are_a_candidate_only_where_they_are_seen(stale: Recording
 
 
 @pytest.mark.thorough
+@pytest.mark.thorough
 def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None:
     case = make_case([stale], DesignModel(), held=True)
     result = judge(case, SearchRules(most=2), DecisionRules(), lambda _w, _s: None)

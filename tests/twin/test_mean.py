@@ -58,6 +58,7 @@ def test_the_live_mean_forgets_what_it_no_longer_needs() -> None:
     assert mean._t.size < 60
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("form", ["running_mean", "running_mean_twice"])
 def test_an_averaged_reading_is_a_lag_of_the_sensor(form: str) -> None:
     one = Inserted("sensor_lag", effect("sensor_lag").form(form), (0.6,))

@@ -75,6 +75,7 @@ def test_what_it_needs() -> None:
     assert "far larger" in on_change(far, None, "in").note
 
 
+@pytest.mark.thorough
 def test_it_holds_until_it_has_changed_enough() -> None:
     y = np.array([0.0, 0.5, 1.0, 1.01, 1.5, 0.0, -1.2])
     report_on_change(y, 1.0)

@@ -102,6 +102,7 @@ def test_the_promise_of_a_pair_is_what_it_takes_away(seed: int) -> None:
             assert gains[i, j] >= -1e-9
 
 
+@pytest.mark.thorough
 @given(st.lists(st.integers(0, 5), min_size=2, max_size=12), st.integers(0, 10_000))
 def test_the_best_of_every_two_names_is_what_a_plain_search_finds(which: list[int], seed: int) -> None:
     effects = ("creep", "stiction", "sensor_lag", "lvdt_drift", "friction_drift", "dead_time")

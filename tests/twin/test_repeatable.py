@@ -103,6 +103,7 @@ def test_a_healthy_valve_has_no_disturbance() -> None:
     assert diagnose([healthy], DesignModel(), (), UP_TO_TWO).diagnosis.verdict == "no_gap"
 
 
+@pytest.mark.thorough
 def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> None:
     late, notes = late_commands(make_case([recorded(0.0, 0.008)], DESIGN))
     assert late[0].values[0] == pytest.approx(0.008, abs=0.002)

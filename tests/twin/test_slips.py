@@ -27,8 +27,10 @@ EVERYTHING = {"deadband", "offset", "compliance", "tau", "rate_limit"}
 @pytest.mark.parametrize(
     ("design", "wrong"),
     [
-        (OFF, EVERYTHING),
-        (replace(OFF, rate_limit=DesignModel().rate_limit), EVERYTHING - {"rate_limit"}),
+        pytest.param(OFF, EVERYTHING, marks=pytest.mark.thorough),
+        pytest.param(
+            replace(OFF, rate_limit=DesignModel().rate_limit), EVERYTHING - {"rate_limit"}, marks=pytest.mark.thorough
+        ),
         (replace(DesignModel(), tau_s=2.2, compliance=0.2, rate_limit=0.14), {"tau", "compliance", "rate_limit"}),
     ],
 )

@@ -28,6 +28,7 @@ def late(lag_s: float) -> Decision:
     return judged(a_record(Plant(DesignModel(), (lag,))))[0].decisions[-1]
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("lag_s", "name", "twin"), [(0.08, "sensor_lag", "additional_lag"), (0.8, "additional_lag", "sensor_lag")]
 )

@@ -180,6 +180,7 @@ def position_of(case: Case) -> Decision:
     return silent(decide(findings, DecisionRules()))
 
 
+@pytest.mark.thorough
 def test_what_a_noisy_gauge_hardly_shows_is_named_where_it_moves_the_stem() -> None:
     """The pressure alone would pass for healthy; the stem is off by several times the noise of its reading."""
     case, decision = converter("play")

@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.chain import Chain
 from twin.live.sensor import Sensor
-from twin.plant import Plant, core_at, stem_at
+from twin.plant import Plant, core_at, picked_up, stem_at
 from twin.simulate import Start, step_for
 from twin.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
 
@@ -35,7 +35,9 @@ class LiveTwin:
         self._time_s = time_s
         self._chain = Chain(c, time_s, command, start.pressure, (start.position, start.play))
         low, high = stem_stops(c.valve)
-        self._sensor = Sensor(c.sensor, time_s, min(max(start.position, low), high), start.core)
+        self._coefficients = c
+        seen = min(max(start.position, low), high) + picked_up(c, start.pressure)
+        self._sensor = Sensor(c.sensor, time_s, seen, start.core)
         self.pressure = start.pressure
         self.position = self._sensor.first
 
@@ -63,7 +65,7 @@ class LiveTwin:
         steps = min(max(math.ceil((time_s - self._time_s) / self._step_s - 1e-9), 1), _MOST_STEPS)
         pressure, stem = self._chain.advance(ends, steps, command)
         offsets = np.array([0, steps], dtype=np.int64)
-        position = self._sensor.advance(ends, offsets, stem)
+        position = self._sensor.advance(ends, offsets, stem + picked_up(self._coefficients, pressure))
         if fresh is None:
             fresh = not abs(position - self.position) <= self._band
         self.position = position if fresh or not self._as_seen else self.position
