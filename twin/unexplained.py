@@ -63,7 +63,8 @@ def _gauge(result: StageResult) -> str:
     """What the pressure gauge itself did, in words."""
     if not result.denied:
         return "the pressure gauge itself strayed, because the stem did not follow it"
-    return f"the pressure gauge itself adds {' and '.join(result.denied)}: the stem went as if the converter had none"
+    causes = " and ".join(name.removeprefix("parameter:") for name in result.denied)
+    return f"the pressure gauge itself has what looks like {causes}: the stem went as if the converter had none"
 
 
 def _looks_like(case: Case, decision: Decision) -> dict[str, object]:

@@ -67,7 +67,8 @@ def denied(case: Case, found: Sequence[Sequence[Trial]], as_designed: Sequence[T
 
 def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:
     """What to say of it. `against`: causes that the reading has, and the stem denies."""
-    like = f" (by itself it would be {' and '.join(against)})" if against else ""
+    causes = " and ".join(name.removeprefix("parameter:") for name in against)
+    like = f" (by itself it would be {causes})" if against else ""
     return DataNote(
         what=f"the pressure reading strays in a way that the stem does not follow{like}",
         handled="taken as the gauge's own error: the position is held to the pressure that the converter's model makes "
