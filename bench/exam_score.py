@@ -62,22 +62,20 @@ def label_of(case: str, sealed: Mapping[str, Any]) -> Label:
     if sealed["cls"] not in KINDS:
         raise BadInput(f"SEALED.json: {case}: class {sealed['cls']!r} is none of {', '.join(KINDS)}")
     kind = KINDS[sealed["cls"]]
-    unknown = [name for name in sealed["truth"] if kind != "outsider" and not _known(name)]
+    stages = _stages()
+    unknown = [name for name in sealed["truth"] if kind != "outsider" and name not in stages]
     if unknown:
         raise BadInput(
             f"SEALED.json: {case}: cause {unknown[0]!r} is not in the vocabulary (lostmotion explain lists it)"
         )
-    causes = tuple(Cause(name, _stage(name) if kind != "outsider" else "", "", 0.0, "", "") for name in sealed["truth"])
+    causes = tuple(Cause(name, stages.get(name, ""), "", 0.0, "", "") for name in sealed["truth"])
     return Label(kind, "stranger", 0, causes)
 
 
-def _known(name: str) -> bool:
-    return name.removeprefix("parameter:") in NUMBERS if name.startswith("parameter:") else name in effects()
-
-
-def _stage(name: str) -> str:
-    number = name.removeprefix("parameter:")
-    return NUMBERS[number] if number != name else effects()[name].stage
+def _stages() -> dict[str, str]:
+    """The stage of every cause of the vocabulary."""
+    numbers = {f"parameter:{name}": stage for name, stage in NUMBERS.items()}
+    return numbers | {name: effect.stage for name, effect in effects().items()}
 
 
 def text(answers: Sequence[Answer]) -> str:

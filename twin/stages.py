@@ -21,7 +21,7 @@ from twin.fit.smooth import noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
 from twin.plant import Plant
-from twin.witness import denied, driven_by_model, gauge_wanders
+from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25
@@ -81,23 +81,33 @@ def judge(
         return StageResult(case, (_judge(case, channel, search, rules, progress, watch),), case.trials)
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     first = formed_by_stem(case, first, rules)
-    first, trials, astray, against = _by_witness(case, first)
-    channel = _sharp(case, position_channel(trials, case.sigma_y))
-    floor = 1.0 if astray else 1.0 + pressure_doubt(case, channel, first)
+    heard = _by_witness(case, first)
+    channel = _sharp(case, position_channel(heard.trials, case.sigma_y))
+    floor = 1.0 if heard.astray else 1.0 + pressure_doubt(case, channel, heard.decision)
     second = _judge(case, channel, search, rules, progress, watch, floor)
-    return StageResult(case, (first, second), trials, astray, against)
+    return StageResult(case, (heard.decision, second), heard.trials, heard.astray, heard.denied)
 
 
-def _by_witness(case: Case, first: Decision) -> tuple[Decision, tuple[Trial, ...], bool, tuple[str, ...]]:
-    """The decision on the pressure after the stem was heard, what drives the valve, and `astray` and `denied` of it."""
-    read, modelled = drive_by_measured(case, first), driven_by_model(_believed(first), case.trials)
+@dataclass(frozen=True, slots=True)
+class _Heard:
+    """The decision on the pressure after the stem was heard, what drives the valve, and what `StageResult` keeps."""
+
+    decision: Decision
+    trials: tuple[Trial, ...]
+    astray: bool = False
+    denied: tuple[str, ...] = ()
+
+
+def _by_witness(case: Case, first: Decision) -> _Heard:
+    trials, modelled = drive_by_measured(case, first), driven_by_model(_believed(first), case.trials)
+    read, left = left_of_position(case, trials), left_of_position(case, modelled)
     if first.names:
         designed = driven_by_model(first.findings.none.plant, case.trials)
-        if denied(case, (read, modelled), designed):
+        if gauge_lies(min(read, left), left_of_position(case, designed)):
             silent = replace(first, accepted=first.findings.none, explained=False, rest=1.0)
-            return silent, designed, True, first.names
-    astray = gauge_wanders(case, read, modelled, drive_by_measured(case, first, careful=False))
-    return first, modelled if astray else read, astray, ()
+            return _Heard(silent, designed, True, first.names)
+    believing = left_of_position(case, drive_by_measured(case, first, careful=False))
+    return _Heard(first, modelled, True) if gauge_wanders(read, left, believing) else _Heard(first, trials)
 
 
 def driven_again(case: Case, result: StageResult) -> tuple[Trial, ...]:

@@ -30,39 +30,30 @@ def driven_by_model(plant: Plant, trials: Sequence[Trial]) -> tuple[Trial, ...]:
     return tuple(trial.with_pressure(pressure_fine(plant, trial)) for trial in trials)
 
 
-def gauge_wanders(
-    case: Case, by_reading: Sequence[Trial], by_model: Sequence[Trial], believing: Sequence[Trial] | None = None
-) -> bool:
-    """Whether the stem followed the model's pressure and not what was read; the trials differ in nothing else.
+def gauge_wanders(read: float, modelled: float, believing: float = 0.0) -> bool:
+    """Whether the stem followed the model's pressure and not what was read, by what each leaves (`left_of_position`).
 
-    `by_reading`: driven by what stands out of the reading's noise; `believing`: by all that the smoothed reading has.
-    Where the stem denies the latter, and goes with the model as well as with what stands out, what is left is noise.
+    `read`: driven by what stands out of the reading's noise; `believing`: by all that the smoothed reading has, 0 where
+    nobody asks. Where the stem denies the latter, and goes with the model as well as with what stands out, what is left
+    is noise.
     """
-    read, modelled = (left_of_position(case, trials) for trials in (by_reading, by_model))
-    if _denies(modelled, read):
-        return True
-    if believing is None or modelled > read + _AS_WELL:
-        return False
-    return _denies(modelled, left_of_position(case, believing))
+    return _denies(modelled, read) or (modelled <= read + _AS_WELL and _denies(modelled, believing))
 
 
-def _denies(modelled: float, read: float) -> bool:
-    """Whether a pressure leaves clearly less of the position than another."""
-    return modelled < _FOLLOWS * read and modelled < read - _CLEARLY
-
-
-def denied(case: Case, found: Sequence[Sequence[Trial]], as_designed: Sequence[Trial]) -> bool:
+def gauge_lies(found: float, designed: float) -> bool:
     """Whether the stem went as if the converter were its design, although the reading has a cause that explains it.
 
-    `found`: the trials driven by the reading, and by the converter's model with that cause; `as_designed`: by the
-    converter without it. What the gauge does itself, a lag of its tube, looks in its reading like a converter's cause.
-    Only where the valve passes for healthy when the design drives it: what is wrong behind the pressure may by chance
-    make up for a part of what is wrong before it.
+    `found`: the least that is left when the reading, or the converter's model with that cause, drives the valve;
+    `designed`: when the converter without it does. What the gauge does itself, a lag of its tube, looks in its reading
+    like a converter's cause. Only where the valve passes for healthy when the design drives it: what is wrong behind
+    the pressure may by chance make up for a part of what is wrong before it.
     """
-    designed = left_of_position(case, as_designed)
-    if designed > SLIGHT:
-        return False
-    return _denies(designed, min(left_of_position(case, trials) for trials in found))
+    return designed <= SLIGHT and _denies(designed, found)
+
+
+def _denies(followed: float, other: float) -> bool:
+    """Whether one pressure leaves clearly less of the position than another, in noise variances."""
+    return followed < _FOLLOWS * other and followed < other - _CLEARLY
 
 
 def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:

@@ -95,11 +95,6 @@ def test_a_name_that_nobody_knows_is_an_error(sealed: dict[str, Any], words: str
         label_of("case07", sealed)
 
 
-def test_an_analogue_reading_is_compared_with_a_model_without_what_is_digital() -> None:
-    design = replace(DesignModel(), effects={"sensor_quantization": {"step": 0.01}, "creep": {"share": 0.1}})
-    assert exam._analogue(design).effects == {"creep": {"share": 0.1}}
-
-
 def write(path: Path, plant: Plant, seed: int, noisy: bool) -> np.ndarray:
     """A record of a plant as a stranger's CSV; the noise-free reading [in]."""
     dice, n = np.random.default_rng(seed), 1200
@@ -138,14 +133,31 @@ def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) ->
     assert "closure on an unseen record: median 0.99" in said or "median 1.0" in said
 
 
-def test_an_unseen_record_that_cannot_be_simulated_is_told_and_has_no_closure(tmp_path: Path, capsys) -> None:
-    folder, out = tmp_path / "sealed", tmp_path / "answers"
+def unseen(folder: Path, out: Path, model: DesignModel) -> Path:
+    """An unseen record of a valve as designed, and `model` as what was made of it; the record's file."""
     out.mkdir()
-    for path in (folder / "design.toml", out / "model.toml"):
-        path.parent.mkdir(exist_ok=True)
-        save_design(DesignModel(), path)
     reading_in = write(folder / "unseen" / "case01.csv", Plant(DesignModel()), 2, noisy=False)
     np.savez(folder / "unseen" / "case01.npz", x_analog=reading_in)
-    (folder / "unseen" / "case01.csv").write_text("time_s,position_in\n0.0,0.1\n", encoding="utf-8")
-    assert exam._unseen(folder, out, "case01") is None
+    save_design(DesignModel(), folder / "design.toml")
+    save_design(model, out / "model.toml")
+    return folder / "unseen" / "case01.csv"
+
+
+@pytest.mark.thorough
+def test_an_analogue_reading_is_compared_with_a_model_without_what_is_digital(tmp_path: Path) -> None:
+    out = tmp_path / "answers"
+    rounding, creep = {"form": "uniform_steps", "step": 0.05}, {"form": "one_tail", "share": 0.1, "tail": 30.0}
+    unseen(tmp_path, out, replace(DesignModel(), effects={"sensor_quantization": rounding}))
+    found = exam._unseen(tmp_path, out, "case01")
+    assert found is not None and found["after_in"] == found["before_in"]
+    save_design(replace(DesignModel(), effects={"sensor_quantization": rounding, "creep": creep}), out / "model.toml")
+    found = exam._unseen(tmp_path, out, "case01")
+    assert found is not None and found["after_in"] > found["before_in"] + 0.001  # what is not digital stays
+
+
+@pytest.mark.thorough
+def test_an_unseen_record_that_cannot_be_simulated_is_told_and_has_no_closure(tmp_path: Path, capsys) -> None:
+    out = tmp_path / "answers"
+    unseen(tmp_path, out, DesignModel()).write_text("time_s,position_in\n0.0,0.1\n", encoding="utf-8")
+    assert exam._unseen(tmp_path, out, "case01") is None
     assert "case01: the unseen record cannot be simulated" in capsys.readouterr().err

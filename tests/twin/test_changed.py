@@ -48,7 +48,6 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
     assert sensor.values[0] == pytest.approx(0.5, abs=0.02)
 
 
-@pytest.mark.thorough
 def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
     found = attributed(result.case, result, ["sensor_lag"], 1)
@@ -59,12 +58,14 @@ def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) ->
     assert found["ep"].ci95 == (0.0, 0.0)
 
 
+@pytest.mark.thorough
 def test_nothing_is_attributed_to_a_cause_that_was_taken_back(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
     assert result.causes == ("sensor_lag",)
     assert attributed(result.case, result, [], 1) is None
 
 
+@pytest.mark.thorough
 def test_what_went_away_is_named_too() -> None:
     result, judgement = judged(a_record(Plant(DesignModel())), worn(0.5))
     assert [c.name for c in judgement.causes][:1] == ["sensor_lag"]

@@ -77,6 +77,7 @@ def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> Non
     assert lag.probability <= weights.twin_ceiling
 
 
+@pytest.mark.thorough
 def test_what_leaves_more_than_the_noise_is_less_sure() -> None:
     """The same cause on the same record, once with nothing left of it and once with a fifth of the noise besides.
 

@@ -90,7 +90,6 @@ def test_a_replay_by_the_clock_reads_what_was_taken_between_the_rows() -> None:
     assert errors["own_clock"] < 0.3 * errors["as_seen"]
 
 
-@pytest.mark.thorough
 def test_part_of_the_rows_keeps_what_is_known_of_them() -> None:
     record = a_record(Plant(DesignModel()), twice=False)
     t = record.time_s - record.time_s[0]
@@ -102,6 +101,7 @@ def test_part_of_the_rows_keeps_what_is_known_of_them() -> None:
     assert np.all(np.diff(part.rows) >= 0)
 
 
+@pytest.mark.thorough
 def test_the_answer_gives_the_period_of_the_clock_and_what_was_fitted() -> None:
     record = a_record(Plant(DesignModel()), n=2400)
     t = record.time_s - record.time_s[0]

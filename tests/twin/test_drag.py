@@ -29,7 +29,6 @@ def test_live_and_with_other_steps_as_at_once(friction: str) -> None:
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
-@pytest.mark.thorough
 @pytest.mark.parametrize("friction", FRICTIONS)
 @pytest.mark.parametrize("throttled", [(2.0, 0.0), (0.0, 5.0)])
 def test_an_orifice_like_small_steps_of_its_law(friction: str, throttled: tuple[float, float]) -> None:
@@ -38,6 +37,7 @@ def test_an_orifice_like_small_steps_of_its_law(friction: str, throttled: tuple[
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
+@pytest.mark.thorough
 def test_a_stem_that_opens_with_less_drag_is_told_from_other_lags() -> None:
     found = diagnose([a_record(dragged("before the lag", (0.0, -0.35)), seed=3)], D).diagnosis
     assert [c.name for c in found.causes] == ["asymmetric_damping"]

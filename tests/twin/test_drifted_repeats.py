@@ -52,7 +52,6 @@ def test_both_are_named_and_the_floor_is_that_of_the_resting_reading(drifting: R
 
 
 @pytest.mark.thorough
-@pytest.mark.thorough
 def test_what_leaves_more_than_the_resting_noise_is_not_kept(
     drifting: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -62,6 +61,7 @@ def test_what_leaves_more_than_the_resting_noise_is_not_kept(
     assert "friction_drift" in {c.name for c in found.diagnosis.causes}
 
 
+@pytest.mark.thorough
 def test_who_stops_the_second_search_keeps_what_the_first_found(drifting: Recording) -> None:
     begun: list[str] = []
 

@@ -66,7 +66,6 @@ def test_held_readings_are_a_candidate_only_where_they_are_seen(stale: Recording
 
 
 @pytest.mark.thorough
-@pytest.mark.thorough
 def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None:
     case = make_case([stale], DesignModel(), held=True)
     result = judge(case, SearchRules(most=2), DecisionRules(), lambda _w, _s: None)
@@ -75,6 +74,7 @@ def test_what_else_is_wrong_shows_beside_held_readings(stale: Recording) -> None
     assert creep.values[0] == pytest.approx(0.05, abs=0.01)
 
 
+@pytest.mark.thorough
 def test_the_updated_model_holds_the_readings_of_another_record() -> None:
     """What is seen in events and fitted as well is in the model: a record that it has not met has its own refreshes."""
     healthy = a_record(Plant(DesignModel()))

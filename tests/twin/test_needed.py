@@ -35,6 +35,7 @@ def slipped(slip: float) -> tuple[StageResult, Judgement]:
     return judged(a_record(with_lag(DesignModel(compliance=0.19 * (1.0 + slip)), 0.1)))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("slip", "accused"), [(0.015, True), (0.0, False)])
 def test_a_number_that_slipped_a_little_and_matters_much_is_accused(slip: float, accused: bool) -> None:
     design = DesignModel(compliance=0.19 * (1.0 + slip))
@@ -196,6 +197,7 @@ def test_what_happens_once_is_no_candidate_for_several_recordings(position: tupl
         assert ("wander" in forms) is there and "linear" in forms
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("rate", [0.0, 5e-5])
 def test_what_drifts_between_repeats_is_found_beside_a_cause_that_does_not(rate: float) -> None:
     play = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.008,))

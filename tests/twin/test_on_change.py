@@ -75,13 +75,13 @@ def test_what_it_needs() -> None:
     assert "far larger" in on_change(far, None, "in").note
 
 
-@pytest.mark.thorough
 def test_it_holds_until_it_has_changed_enough() -> None:
     y = np.array([0.0, 0.5, 1.0, 1.01, 1.5, 0.0, -1.2])
     report_on_change(y, 1.0)
     assert y.tolist() == [0.0, 0.0, 0.0, 1.01, 1.01, 0.0, -1.2]
 
 
+@pytest.mark.thorough
 def test_a_healthy_valve_that_is_reported_on_change_has_this_and_nothing_else() -> None:
     found = answered(reported(a_record(Plant(DESIGN), twice=True))).diagnosis
     assert [(c.name, c.form) for c in found.causes] == [("sensor_quantization", "on_change")]

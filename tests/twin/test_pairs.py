@@ -102,7 +102,6 @@ def test_the_promise_of_a_pair_is_what_it_takes_away(seed: int) -> None:
             assert gains[i, j] >= -1e-9
 
 
-@pytest.mark.thorough
 @given(st.lists(st.integers(0, 5), min_size=2, max_size=12), st.integers(0, 10_000))
 def test_the_best_of_every_two_names_is_what_a_plain_search_finds(which: list[int], seed: int) -> None:
     effects = ("creep", "stiction", "sensor_lag", "lvdt_drift", "friction_drift", "dead_time")
@@ -119,6 +118,7 @@ def test_the_best_of_every_two_names_is_what_a_plain_search_finds(which: list[in
     assert found == sorted(best.values(), reverse=True)
 
 
+@pytest.mark.thorough
 def test_a_wrong_number_beside_an_effect_is_named() -> None:
     # The effect alone explains everything with the number as its nuisance: only what that costs gives it away.
     creep = Inserted("creep", effect("creep").form("one_tail"), (0.12, 30.0))

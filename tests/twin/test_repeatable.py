@@ -97,13 +97,13 @@ def test_a_pressure_that_wanders_and_is_measured_is_no_disturbance() -> None:
     assert disturbance(case, driven) is None
 
 
+@pytest.mark.thorough
 def test_a_healthy_valve_has_no_disturbance() -> None:
     healthy = recorded(0.0)
     assert disturbance(make_case([healthy], DESIGN)) is None
     assert diagnose([healthy], DesignModel(), (), UP_TO_TWO).diagnosis.verdict == "no_gap"
 
 
-@pytest.mark.thorough
 def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> None:
     late, notes = late_commands(make_case([recorded(0.0, 0.008)], DESIGN))
     assert late[0].values[0] == pytest.approx(0.008, abs=0.002)
@@ -117,6 +117,7 @@ def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> Non
     assert late_commands(make_case([recorded(0.0, 0.25)], DESIGN)) == ((), [])
 
 
+@pytest.mark.thorough
 def test_timing_is_neither_a_cause_nor_in_the_model() -> None:
     outcome = diagnose([recorded(0.0, 0.008)], DesignModel(), (), UP_TO_TWO)
     assert outcome.diagnosis.verdict == "no_gap"

@@ -40,6 +40,7 @@ def test_the_wrong_numbers_are_named_and_no_effect(design: DesignModel, wrong: s
     assert {c.name for c in judgement.causes} == {f"parameter:{n}" for n in wrong}
 
 
+@pytest.mark.thorough
 def test_an_effect_is_not_put_down_to_the_numbers() -> None:
     lagged = Plant(DesignModel(), (Inserted("sensor_lag", effect("sensor_lag").form("first_order"), (0.5,)),))
     _, judgement = judged(a_record(lagged), DesignModel())

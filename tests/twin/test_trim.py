@@ -63,3 +63,9 @@ def test_an_effect_that_spares_the_numbers_or_explains_more_does() -> None:
 )
 def test_a_cause_is_doubtful_unless_it_or_one_of_two_is_likely(own, rival, here, sets, kept) -> None:
     assert doubtful("creep", {"creep": own, "stiction": rival}, here, sets) is not kept
+
+
+def test_a_twin_is_no_rival_besides() -> None:
+    """Its belief counts with the cause's own, and once."""
+    probability = {"sensor_lag": 0.01, "additional_lag": 0.43}
+    assert doubtful("sensor_lag", probability, (), (("sensor_lag", "additional_lag"),))

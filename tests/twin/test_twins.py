@@ -65,6 +65,7 @@ def test_how_usual_a_size_is() -> None:
     assert log_usual(fits["stiction"]) == 0.0  # nothing is known of it
 
 
+@pytest.mark.thorough
 def test_creep_has_no_sharp_offset_beside_it() -> None:
     """What gives way under the whole force has moved the curves too, by as much as has crept before the record."""
     creep = Inserted("creep", effect("creep").form("force_tail"), (0.06, 40.0))

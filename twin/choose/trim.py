@@ -30,9 +30,14 @@ def belief(name: str, probability: Mapping[str, float], here: Collection[str] = 
 
     `here`: those that the records at hand cannot tell from it either (see `alike`).
     """
+    return sum(probability.get(other, 0.0) for other in _one_with(name, here))
+
+
+def _one_with(name: str, here: Collection[str]) -> set[str]:
+    """A cause with its twins, and with those that the records at hand cannot tell from it."""
     one = effects().get(name)
     twins = {twin for names in one.same_as.values() for twin in names} if one is not None else set()
-    return sum(probability.get(other, 0.0) for other in {name, *twins, *here})
+    return {name, *twins, *here}
 
 
 def doubtful(name: str, probability: Mapping[str, float], here: Collection[str], sets: Sequence[Sequence[str]]) -> bool:
@@ -42,7 +47,7 @@ def doubtful(name: str, probability: Mapping[str, float], here: Collection[str],
     are sure, and the one is named with its set.
     """
     believed = belief(name, probability, here)
-    rivals = [r for members in sets if members[0] == name for r in members[1:] if r not in here]
+    rivals = {rival for members in sets if members[0] == name for rival in members} - _one_with(name, here)
     nearest = max((probability.get(rival, 0.0) for rival in rivals), default=0.0)
     return believed < LIKELY and believed + nearest < BOTH
 
