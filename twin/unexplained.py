@@ -64,7 +64,7 @@ def _gauge(result: StageResult) -> str:
     if not result.denied:
         return "the pressure gauge itself strayed, because the stem did not follow it"
     causes = " and ".join(name.removeprefix("parameter:") for name in result.denied)
-    return f"the pressure gauge itself has what looks like {causes}: the stem went as if the converter had none"
+    return f"the pressure gauge itself does what {causes} would: the stem went as if the converter had none"
 
 
 def _looks_like(case: Case, decision: Decision) -> dict[str, object]:

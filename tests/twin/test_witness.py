@@ -147,7 +147,7 @@ def test_a_late_gauge_is_said_in_words() -> None:
     found = diagnose([late(gauge=True)], DESIGN, (), UP_TO_TWO).diagnosis
     assert (found.verdict, found.causes) == ("unexplained", ())
     assert "the pressure reading that is off" in found.statement
-    assert "the pressure gauge itself has what looks like dead_time" in found.statement
+    assert "the pressure gauge itself does what dead_time would" in found.statement
     assert any("by itself it would be dead_time" in note.what for note in found.data_quality)
 
 
