@@ -43,14 +43,14 @@ def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
 
 def _drag_each_way(c: Coefficients, values: Sequence[float]) -> None:
     # Friction that grows with speed takes pressure; what pulls against a stop has pressure to spare.
-    c.valve[V_DRAG_CLOSE_S] += values[0] * c.valve[V_TAU_CLOSE_S]
-    c.valve[V_DRAG_OPEN_S] += values[1] * c.valve[V_TAU_OPEN_S]
+    c.valve[V_DRAG_CLOSE_S] += values[0] * c.design.tau_s
+    c.valve[V_DRAG_OPEN_S] += values[1] * c.design.tau_s
 
 
 def _orifice(c: Coefficients, values: Sequence[float]) -> None:
     # Throttled oil or air holds with the square of the speed, and takes pressure likewise.
-    c.valve[V_SQUARED_S] += values[0] * c.valve[V_TAU_CLOSE_S] / c.design.rate_limit
-    c.valve[V_SQUARED_S + 1] += values[1] * c.valve[V_TAU_OPEN_S] / c.design.rate_limit
+    c.valve[V_SQUARED_S] += values[0] * c.design.tau_s / c.design.rate_limit
+    c.valve[V_SQUARED_S + 1] += values[1] * c.design.tau_s / c.design.rate_limit
 
 
 def _orifice_alike(c: Coefficients, values: Sequence[float]) -> None:
