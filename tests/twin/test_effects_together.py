@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -55,16 +57,20 @@ def test_order_does_not_matter(inserted: list[Inserted]) -> None:
     np.testing.assert_allclose(chain(inserted)[1], chain(inserted[::-1])[1], atol=1e-9)
 
 
-@pytest.mark.parametrize("form", [f.name for f in effects()["asymmetric_damping"].forms])
-def test_what_drag_adds_is_a_share_of_the_design_s_lag_and_of_no_other(form: str) -> None:
-    """A spring that changes the lags may stand before it or behind it."""
-    drag = effects()["asymmetric_damping"].form(form)
-    adds = Inserted("asymmetric_damping", drag, tuple(p.starts[-1] for p in drag.parameters))
-    spring = Inserted("spring_asymmetry", effects()["spring_asymmetry"].form("with_lags"), (-0.08,))
-    loaded = Inserted("friction_in_motion", effects()["friction_in_motion"].form("full"), ())
-    one, other = chain([loaded, adds, spring])[1], chain([spring, adds, loaded])[1]
-    np.testing.assert_allclose(one, other, atol=1e-12)
-    assert np.abs(one - chain([loaded, spring])[1]).max() > 0.001 * DESIGN.travel
+FORMS = [(name, form) for name, one in effects().items() for form in one.forms]
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("loaded", [False, True])
+def test_any_two_forms_do_the_same_in_either_order(loaded: bool) -> None:
+    """Alone, and beside friction in the force balance, where other coefficients count: chance draws few of them."""
+    friction = [Inserted("friction_in_motion", effects()["friction_in_motion"].form("full"), ())] if loaded else []
+    found = [Inserted(name, form, tuple(p.starts[-1] for p in form.parameters)) for name, form in FORMS]
+    for one, other in combinations(found, 2):
+        if one.effect == other.effect or (loaded and "friction_in_motion" in (one.effect, other.effect)):
+            continue
+        forth, back = chain([one, other, *friction])[1], chain([*friction, other, one])[1]
+        np.testing.assert_allclose(forth, back, atol=1e-9, err_msg=f"{one.effect} {other.effect}")
 
 
 def test_a_lag_of_the_stem_beside_a_filter_of_two_poles_keeps_its_own() -> None:

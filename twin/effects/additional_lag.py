@@ -15,7 +15,7 @@ def _lag(doc: str) -> tuple[Parameter]:
 
 
 def _after(c: Coefficients, values: Sequence[float]) -> None:
-    c.valve[V_TAU_AFTER_S] = values[0]
+    c.valve[V_TAU_AFTER_S] += values[0]  # a stem with a mass has one, too
 
 
 def _before(c: Coefficients, values: Sequence[float]) -> None:

@@ -115,7 +115,7 @@ def _met_at_speed(c: Coefficients) -> None:
 
 def _elastic(c: Coefficients, values: Sequence[float]) -> None:
     _full(c, values)
-    c.valve[V_PRESLIDING] = values[0]
+    c.valve[V_PRESLIDING] += values[0]  # what changed since may stand before it
     _soft_stops(c, *values[1:])
 
 
