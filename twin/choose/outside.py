@@ -6,12 +6,9 @@ Without them the nearest known effect would be named for what it only resembles:
 from __future__ import annotations
 
 from twin.choose.decide import Decision
+from twin.choose.needless import LEAVES
 from twin.choose.trim import dropped
 from twin.fit.space import Cause
-
-#: Of the excess over the noise, what known causes beside something outside of the vocabulary may leave at the most
-#: without it: they take over what they can of its part, and to explain the rest is no proof of them.
-_LEAVES = 0.05
 
 
 def outside_of(decision: Decision) -> Cause | None:
@@ -24,6 +21,6 @@ def inside(decision: Decision) -> Decision:
     """The decision without what lies outside, where the known causes beside it explain the gap by themselves."""
     rival = outside_of(decision)
     smaller = None if rival is None else dropped(decision, rival.name)
-    if smaller is None or not smaller.names or smaller.rest >= _LEAVES:
+    if smaller is None or not smaller.names or smaller.rest >= LEAVES:
         return decision
     return smaller
