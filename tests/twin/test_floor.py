@@ -181,6 +181,9 @@ def test_a_guess_beside_what_is_sure_is_not_spoken() -> None:
     assert [d.names for d in spoken((guess,), Weights(), True)] == [()]
     assert spoken((guess,), Weights(), False) == (guess,)  # nothing is sure: whether it is upheld is decided later
     assert spoken((sure,), Weights(), True) == (sure,)
+    little = findings_of({("ep_calibration",): (1.0, 1000.0)}, 1.6)
+    slight = replace(decide(little, RULES), accepted=little.fits[0], explained=True, rest=0.0)
+    assert [d.names for d in spoken((slight, guess), Weights(), False)] == [(), guess.names]
 
 
 def test_what_hardly_shows_on_a_signal_is_not_spoken_beside_what_is_sure() -> None:

@@ -101,11 +101,15 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
     `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
     equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
     percent: where a signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the
-    stem so far that the position would not.
+    stem so far that the position would not. It makes no answer either of a guess about a clear gap behind it.
     """
-    unsure = [_guess(d, weights) or (_slight(d) and not _reaches(d, decisions)) for d in decisions]
-    sure = seen or any(d.names and not doubt for d, doubt in zip(decisions, unsure, strict=True))
-    return tuple(_silent(d) if sure and doubt else d for d, doubt in zip(decisions, unsure, strict=True))
+    guesses = [_guess(d, weights) for d in decisions]
+    slight = [_slight(d) and not _reaches(d, decisions) for d in decisions]
+    gaps = [bool(d.names) and not little for d, little in zip(decisions, slight, strict=True)]
+    clear = seen or any(gaps)
+    sure = seen or any(gap and not guess for gap, guess in zip(gaps, guesses, strict=True))
+    mute = [(sure and guess) or (clear and little) for guess, little in zip(guesses, slight, strict=True)]
+    return tuple(_silent(d) if one else d for d, one in zip(decisions, mute, strict=True))
 
 
 def _silent(decision: Decision) -> Decision:
