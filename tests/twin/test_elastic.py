@@ -53,20 +53,26 @@ def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSUR
     return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
 
 
-def stepped(reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3) -> FloatArray:
+def stepped(
+    reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3, share: float = 1.0
+) -> FloatArray:
     """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops.
 
     The speed at which friction has fallen so far (`falling`) is the one that it has then: found by substitution.
+    `share`: of the half deadband, what the springs have; the rest is a play before them.
     """
     d, slips = LONG, stretches(reach)
     held, x, speed, rows = -slips, START, 0.0, [START]
+    wide = 0.5 * d.deadband * (1.0 - share)
+    behind = PRESSURE[0] + wide
     per = round((TIME_S[1] - TIME_S[0]) / h)
     for a, b in pairwise(PRESSURE):
         for k in range(per):
             turned, p = float(np.mean(held / slips)), a + (b - a) * (k + 0.5) / per
+            behind = min(max(behind, p - wide), p + wide)
             for _ in range(4 if falling[0] else 1):
-                friction = (0.5 * d.deadband + falling[0] * np.exp(-abs(speed) / falling[1])) * turned
-                pull = d.compliance * (p - d.offset - friction)
+                friction = (0.5 * d.deadband * share + falling[0] * np.exp(-abs(speed) / falling[1])) * turned
+                pull = d.compliance * (behind - d.offset - friction)
                 speed = np.clip((np.clip(pull, 0.0, d.travel) - x) / d.tau_s, -d.rate_limit, d.rate_limit)
             new = min(max(x + h * speed, 0.0), d.travel)
             held, x = np.clip(held + new - x, -slips, slips), new
@@ -78,6 +84,14 @@ def stepped(reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 
 def test_like_springs_stepped_in_small_steps(reach: float) -> None:
     """Other formulation, same valve; started as after opening."""
     assert np.max(np.abs(stem(plant(reach)) - stepped(reach))) < 0.001 * 0.5625
+
+
+@pytest.mark.parametrize("share", [0.1, 0.6, 1.0])
+def test_behind_a_play_it_is_like_springs_stepped_behind_one(share: float) -> None:
+    """What of the deadband is no friction on the stem is a play before it."""
+    form = effect("friction_in_motion").form("partial_elastic")
+    got = stem(Plant(LONG, [Inserted("friction_in_motion", form, (share, 0.02, 0.0, 0.0))]))
+    assert np.max(np.abs(got - stepped(0.02, share=share))) < 0.001 * 0.5625
 
 
 def test_it_falls_with_the_speed_as_in_small_steps() -> None:

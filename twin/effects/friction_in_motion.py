@@ -129,6 +129,14 @@ def _loaded(c: Coefficients, values: Sequence[float]) -> None:
         _soft_stops(c, below, above)
 
 
+def _partly_elastic(c: Coefficients, values: Sequence[float]) -> None:
+    share, presliding, below, above = values
+    _partial(c, values)
+    if share > 0.0:
+        c.valve[V_PRESLIDING] += presliding
+        _soft_stops(c, below, above)
+
+
 def _soft_stops(c: Coefficients, below: float, above: float) -> None:
     """Forces may balance so far beyond the stops, which hold the stem."""
     c.valve[V_HARD_LOW] = max(c.valve[V_HARD_LOW], c.valve[V_LOW])
@@ -156,6 +164,7 @@ EFFECT = Effect(
     "short_of_target: that play is held inside the stops, what pulls the stem is |w - x| less k share (a1 - a2) / 2; "
     "rounded: tau v + share k (a1 - a2) / 2 tanh(v / speed) = k (p - (a1 + a2) / 2) - x behind that play; elastic: "
     "friction turns over a distance, w is held only beyond the stops, x at the stops; "
+    "partial_elastic: as partial, with such friction and such stops; "
     "partial_loaded: as partial, with friction in proportion to 1 + load (w / travel - 1/2) and such stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
     "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007) 580 (rounded)",
@@ -167,6 +176,7 @@ EFFECT = Effect(
         Form("rounded", (_SHARE, _SPEED), _rounded),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),
+        Form("partial_elastic", (_SHARE, _PRESLIDING, _beyond("lower"), _beyond("upper")), _partly_elastic),
         Form("partial_loaded", (_SHARE, _LOAD, _beyond("lower"), _beyond("upper")), _loaded),
     ),
     absorbs=("tau",),
