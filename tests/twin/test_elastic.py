@@ -53,9 +53,7 @@ def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSUR
     return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
 
 
-def stepped(
-    reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3, share: float = 1.0
-) -> FloatArray:
+def stepped(reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3, share: float = 1.0) -> FloatArray:
     """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops.
 
     The speed at which friction has fallen so far (`falling`) is the one that it has then: found by substitution.

@@ -156,3 +156,18 @@ def test_a_stem_that_lags_behind_a_ramp_is_held_by_nothing() -> None:
         for row in (250, 750):
             part = recorded(plant, ramp).slice(row, 900)
             assert not remembers(Plant(DESIGN), part, make_grid(part.time_s, 0.02))
+
+
+def test_a_gauge_that_hums_starts_where_it_swings_about() -> None:
+    """Before the command changes a hum comes back, and a pressure that still settles does not."""
+    command, rng = np.repeat([11.0, 8.0], [60, 200]), np.random.default_rng(4)
+    time_s = 0.1 * np.arange(command.size)
+    settles = 11.0 - 0.3 * np.exp(-time_s / 0.8)
+    read = 11.0 + 0.13 * np.sin(4.0 * time_s) + rng.normal(0.0, 0.01, time_s.size)
+    for pressure, start, within in ((read, 11.0, 0.03), (settles, 10.7, 0.04)):
+        blank = Recording("made", time_s, command, np.full(command.size, 0.4), pressure)
+        assert make_trial(blank, 0.02).start_pressure == pytest.approx(start, abs=within)
+    spiked = settles.copy()
+    spiked[[20, 30]] = 10.0  # two false readings are no swing
+    blank = Recording("made", time_s, command, np.full(command.size, 0.4), spiked)
+    assert make_trial(blank, 0.02).start_pressure == pytest.approx(10.7, abs=0.04)

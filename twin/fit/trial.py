@@ -19,6 +19,8 @@ SETTLE_S = 3.0
 #: Share of the command's span that is a step; in times of the short intervals, one in which rows are missing; the
 #: largest share of rows that steps at unknown times may cost.
 _STEP, _LATE, _MOST = 0.02, 1.6, 0.5
+#: So many readings on one side of the first four are neither of these nor a few outliers.
+_BACK = 5
 #: Standard deviation of the bell that takes the noise off the readings, for how fast they move.
 _SMOOTH_S = 0.15
 
@@ -81,10 +83,11 @@ def make_trial(
         use_p = np.isfinite(recording.pressure) & ~early & ~vague
     else:
         use_y &= ~vague
-    position = _at_start(recording.position, use_y)
+    steady = _steady_rows(recording.command)
+    position = _at_start(recording.position, use_y, steady)
     pressure = recording.command[0]
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
-        pressure = _at_start(recording.pressure, np.isfinite(recording.pressure))
+        pressure = _at_start(recording.pressure, np.isfinite(recording.pressure), steady)
     stem = None if recording.pressure is None else _stem_as_read(recording, grid, use_y)
     use_y &= ~early
     return Trial(
@@ -120,10 +123,17 @@ def after_unseen_steps(recording: Recording) -> npt.NDArray[np.bool_]:
     return np.asarray(vague) if vague.mean() < _MOST else none
 
 
-def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:
+def _steady_rows(command: FloatArray) -> int:
+    """How many rows the command stays at its first value."""
+    changed = np.flatnonzero(command != command[0])
+    return int(changed[0]) if changed.size else command.size
+
+
+def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_], steady: int) -> float:
     """The first value: the mean over the readings before the signal leaves the band of its own noise.
 
-    One noisy reading of the pressure would move the play off for as long as the stem then takes to settle.
+    One noisy reading of the pressure would move the play off for as long as the stem then takes to settle. A signal
+    that comes back, in the `steady` rows before the command changes, swings about where it is: the mean over those.
     """
     values = signal[use][:200]
     if values.size < 4:
@@ -133,7 +143,16 @@ def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_]) -> float:
     base = float(np.median(values[:4]))
     away = np.flatnonzero(np.abs(values - base) > 4.0 * noise + 1e-12)
     still = values[: max(int(away[0]), 1)] if away.size else values
+    waiting = signal[:steady][use[:steady]]
+    if away.size and _swings(waiting, base, 4.0 * noise):
+        still = waiting
     return float(np.mean(still))
+
+
+def _swings(values: FloatArray, base: float, band: float) -> bool:
+    """Whether `values` are beyond the band about `base` on both sides: what settles goes one way."""
+    above, below = np.count_nonzero(values > base + band), np.count_nonzero(values < base - band)
+    return min(int(above), int(below)) >= _BACK
 
 
 def concatenate(parts: Sequence[FloatArray]) -> FloatArray:
