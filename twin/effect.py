@@ -18,7 +18,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.place import Place
-from twin.slots import GRID, neutral_ep, neutral_sensor, neutral_valve
+from twin.slots import GRID, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW, neutral_ep, neutral_sensor, neutral_valve
 
 _XI = np.linspace(0.0, 1.0, GRID)
 _XI.setflags(write=False)
@@ -160,6 +160,13 @@ class Coefficients:
         """Adds to the half deadband [pressure] for good."""
         self.close_shift += half
         self.open_shift -= half
+
+    def press_beyond_stops(self, below: float, above: float) -> None:
+        """Lets forces balance so far beyond the stops [position], which go on holding the stem."""
+        self.valve[V_HARD_LOW] = max(self.valve[V_HARD_LOW], self.valve[V_LOW])
+        self.valve[V_HARD_HIGH] = min(self.valve[V_HARD_HIGH], self.valve[V_HIGH])
+        self.valve[V_LOW] -= below
+        self.valve[V_HIGH] += above
 
     def bend_at_stem(self, closing: FloatArray, opening: FloatArray, compliance: FloatArray | None = None) -> None:
         """Adds to the pressure needed where the stem is, and multiplies the compliance there; shapes (GRID,)."""

@@ -60,6 +60,7 @@ class PlainValve:
     breakaway: float = 0.0
     held: float = 0.0  # distance up to which a stem at rest stays, and the speed below which it rests
     stick_speed: float = 0.0
+    pressed: float = 0.0  # how far beyond the stops of the stem what pulls it may go
     second_lag: float = 0.0
     creep: float = 0.0
     creep_tau: float = 30.0
@@ -140,7 +141,7 @@ class PlainValve:
             w = self._solve(p - wide, self.a1, k1, +1.0)
         elif p < need_open - self.breakaway:
             w = self._solve(p + wide, self.a2, k2, -1.0)
-        return min(max(w, self.low), self.high)
+        return min(max(w, self.low - self.pressed), self.high + self.pressed)
 
     def _solve(self, p: float, a: float, k: float, sign: float) -> float:
         """Position at which the curve needs pressure `p`."""

@@ -95,6 +95,10 @@ SAME = {
     "leaking": (plant_with("ep_deadband", "overlap_leaking", 0.3, 0.1), PlainValve(overlap=0.3, leak=0.1)),
     "cut_off": (plant_with("supply_saturation", "cut_off", 10.5), PlainValve(cut_off=10.5)),
     "held_stem": (plant_with("stiction", "held_stem", 0.4, 4e-3), PlainValve(held=0.076, stick_speed=4e-3)),
+    "pressed": (
+        plant_with("stiction", "held_stem_pressed", 0.4, 4e-3),
+        PlainValve(held=0.076, stick_speed=4e-3, pressed=0.076),
+    ),
     "spring": (plant_with("spring_asymmetry", "hinged_open", 0.1), PlainValve(k1=0.19 / 0.9, k2=0.19 / 1.1)),
     "nonlinear_spring": (plant_with("nonlinear_spring", "bow", 0.4), PlainValve(bend=bow)),
     "friction_spot": (plant_with("position_dependent_friction", "spot", 0.3, 0.5, 0.15), PlainValve(widen=spot)),

@@ -116,7 +116,7 @@ def _met_at_speed(c: Coefficients) -> None:
 def _elastic(c: Coefficients, values: Sequence[float]) -> None:
     _full(c, values)
     c.valve[V_PRESLIDING] += values[0]  # what changed since may stand before it
-    _soft_stops(c, *values[1:])
+    c.press_beyond_stops(*values[1:])
 
 
 def _loaded(c: Coefficients, values: Sequence[float]) -> None:
@@ -126,7 +126,7 @@ def _loaded(c: Coefficients, values: Sequence[float]) -> None:
         more = 0.5 * c.design.deadband * share * load * (c.xi - 0.5)
         c.close_shift += more
         c.open_shift -= more
-        _soft_stops(c, below, above)
+        c.press_beyond_stops(below, above)
 
 
 def _partly_elastic(c: Coefficients, values: Sequence[float]) -> None:
@@ -134,15 +134,7 @@ def _partly_elastic(c: Coefficients, values: Sequence[float]) -> None:
     _partial(c, values)
     if share > 0.0:
         c.valve[V_PRESLIDING] += presliding
-        _soft_stops(c, below, above)
-
-
-def _soft_stops(c: Coefficients, below: float, above: float) -> None:
-    """Forces may balance so far beyond the stops, which hold the stem."""
-    c.valve[V_HARD_LOW] = max(c.valve[V_HARD_LOW], c.valve[V_LOW])
-    c.valve[V_HARD_HIGH] = min(c.valve[V_HARD_HIGH], c.valve[V_HIGH])
-    c.valve[V_LOW] -= below
-    c.valve[V_HIGH] += above
+        c.press_beyond_stops(below, above)
 
 
 def _full_hit(c: Coefficients, values: Sequence[float]) -> None:

@@ -132,6 +132,12 @@ def _held_stem(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_STICK_SPEED] = values[1]
 
 
+def _pressed(c: Coefficients, values: Sequence[float]) -> None:
+    """Friction holds the stem only, so what pulls it goes on where a stop would hold the stem, and gets it there."""
+    _held_stem(c, values)
+    c.press_beyond_stops(c.valve[V_HELD], c.valve[V_HELD])
+
+
 def _short(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_SHORT] = values[0] * c.design.compliance
     c.valve[V_STRIBECK_SPEED] = values[1]
@@ -146,7 +152,8 @@ EFFECT = Effect(
     equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed, and "
     "has to break away the other way in any case; target_sticks: the target w itself sticks below the stick speed, and "
     "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
-    "held_stem: x stays while |w - x| <= k s; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
+    "held_stem: x stays while |w - x| <= k s; held_stem_pressed: likewise, and w goes k s beyond the stops of x at "
+    "most; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
     "short_of_target: what pulls the stem is |w - x| less k s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4549; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck, growth at rest)",
@@ -156,6 +163,7 @@ EFFECT = Effect(
         Form("grows_at_rest", (_BREAKAWAY, _AGING), _grows_at_rest),
         Form("one_jump", (_BREAKAWAY,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
+        Form("held_stem_pressed", (_BREAKAWAY, _STICK_SPEED), _pressed),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
         Form("short_of_target", (_SHORT, _FALL_SPEED, _INERTIA), _short),
     ),
