@@ -20,6 +20,7 @@ from twin.fit.numbers import nominal, retuned
 from twin.fit.smooth import noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
+from twin.in_steps import in_steps
 from twin.plant import Plant
 from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position
 
@@ -74,7 +75,7 @@ def judge(
 ) -> StageResult:
     """Runs the search on every channel that the signals allow; `watch` is shown each search as it begins."""
     if case.sigma_p is None:
-        channel = _sharp(case, chain_channel(case.trials, case.sigma_y))
+        channel = in_steps(case, chain_channel(case.trials, case.sigma_y))
         if case.noise.position.source != "repeats":
             # Without measured pressure and without repeats nobody knows how much the pressure wandered by itself.
             rules = replace(rules, quiet=3.0 * rules.quiet)
@@ -82,7 +83,7 @@ def judge(
     first = _judge(case, pressure_channel(case.trials, case.sigma_p), search, rules, progress, watch)
     first = formed_by_stem(case, first, rules)
     heard = _by_witness(case, first)
-    channel = _sharp(case, position_channel(heard.trials, case.sigma_y))
+    channel = in_steps(case, position_channel(heard.trials, case.sigma_y))
     floor = 1.0 if heard.astray else 1.0 + pressure_doubt(case, channel, heard.decision)
     second = _judge(case, channel, search, rules, progress, watch, floor)
     return StageResult(case, (heard.decision, second), heard.trials, heard.astray, heard.denied)
@@ -114,12 +115,6 @@ def driven_again(case: Case, result: StageResult) -> tuple[Trial, ...]:
     """The trials of another look at the same records, driven as those of a result."""
     converter = result.decisions[0]
     return driven_by_model(_believed(converter), case.trials) if result.astray else drive_by_measured(case, converter)
-
-
-def _sharp(case: Case, channel: Channel) -> Channel:
-    """The channel with intervals for readings where these are coarse."""
-    steps = case.coarse
-    return channel if steps is None else replace(channel, sigma=steps.beyond, half=steps.half)
 
 
 def pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:

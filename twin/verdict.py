@@ -25,8 +25,9 @@ MATERIAL_SHARE = 0.25
 #: Behind a converter that explains the rest, a share of the gap that needs no cause of its own.
 MINOR_SHARE = 0.02
 _EVENT_PROBABILITY = 0.97
-#: Mean squared residual, noise = 1, that false readings too small to be recognised may leave.
-MISSED_FALSE = 4.0
+#: Mean squared residual, noise = 1, that false readings too small to be recognised may leave, or noise that takes
+#: readings over the edges of coarse steps: it does so with its cube, and how much of it there is hardly shows in them.
+MISSED = 4.0
 #: Standard deviation of a size that comes from its form being a model, as a share of the size (docs/calibration.md).
 FORM_ERROR = 0.015
 #: Mean squared residual, noise = 1, that has to be common to repeats before it is a gap of the model.
@@ -75,11 +76,13 @@ def verdict_of(causes: Sequence[Cause]) -> Verdict:
 def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool:
     """Whether a channel with a gap found no cause, and the gap matters for the stem.
 
-    Among false readings there are always some that cannot be told from true ones; what little they add needs no cause.
+    Among false readings there are always some that cannot be told from true ones; what little they add needs no cause,
+    nor what is beyond the edges of coarse steps by a little.
     Readings that are seen to be held, but at no fixed period, cannot be predicted, and are a cause all the same.
     """
     for decision in result.decisions:
-        if "sensor_dropouts" in sensing.accepted and decision.findings.none.mse < MISSED_FALSE:
+        hides = "sensor_dropouts" in sensing.accepted or decision.findings.channel.half > 0.0
+        if hides and decision.findings.none.mse < MISSED:
             continue
         if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
             continue

@@ -17,6 +17,7 @@ from twin.fit.channel import position_channel, pressure_fine
 from twin.fit.fitting import fit
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.fit.trial import Trial
+from twin.in_steps import in_steps
 from twin.plant import Plant
 
 #: Of what the re-tuned design leaves of the position when it is driven by the reading: the most that it leaves when
@@ -71,6 +72,6 @@ def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:
 
 def left_of_position(case: Case, trials: Sequence[Trial]) -> float:
     """Mean square that the design leaves of the position with its numbers re-tuned, noise = 1."""
-    channel = position_channel(trials, case.sigma_y)
+    channel = in_steps(case, position_channel(trials, case.sigma_y))
     space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
     return fit(channel, space, [np.zeros(len(space.unknowns))]).mse

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.signal import lfilter
 
 from control.design import DesignModel
 from logs.recording import Recording
@@ -17,9 +18,14 @@ from twin.catalog import effect
 from twin.choose.decide import DecisionRules
 from twin.choose.score import student_log_likelihood
 from twin.choose.search import SearchRules
+from twin.choose.weigh import Weights
+from twin.fit.trial import Trial
 from twin.noise.coarse import Coarse, coarse, flicker
 from twin.plant import Inserted, Plant
+from twin.sensing import sense
 from twin.stages import judge
+from twin.verdict import pronounce
+from twin.witness import driven_by_model, gauge_wanders, left_of_position
 
 STEP_IN = 0.03
 LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.25,))
@@ -88,3 +94,39 @@ def test_errors_that_are_mostly_none_have_a_likelihood_of_a_size() -> None:
     sparse = np.where(np.arange(2000) % 40 == 0, np.random.default_rng(5).normal(size=2000), 0.0)
     twice = student_log_likelihood(2.0 * sparse)
     assert student_log_likelihood(sparse) - twice == pytest.approx(2000 * np.log(2.0), rel=1e-3)
+
+
+def test_the_stem_is_heard_within_the_steps_of_its_reading() -> None:
+    """Slow noise of a gauge moves a modelled stem by less than the steps, and beyond their edges all the same."""
+    healthy = a_record(Plant(DesignModel()))
+    slow = lfilter([1.0], [1.0, -0.99], np.random.default_rng(5).normal(0.0, 0.006, healthy.n))
+    strays = replace(rounded(healthy), pressure=np.asarray(healthy.pressure) + slow)
+    left = []
+    for sharp in (True, False):
+        case = make_case([strays], DesignModel(), step=STEP_IN, sharp=sharp)
+        driven = case.trials[0].with_pressure(np.interp(*_fine(case.trials[0]), np.asarray(strays.pressure)))
+        modelled = driven_by_model(case.base, case.trials)
+        left.append(gauge_wanders(left_of_position(case, (driven,)), left_of_position(case, modelled)))
+    assert left == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("half", "mse", "verdict"), [(0.03, 3.0, "no_gap"), (0.03, 5.0, "unexplained"), (0.0, 3.0, "unexplained")]
+)
+def test_what_is_beyond_the_edges_by_a_little_is_no_gap(half: float, mse: float, verdict: str) -> None:
+    """How much noise takes readings over an edge hardly shows in them: it does so with its cube."""
+    record = a_record(Plant(DesignModel()))
+    case = make_case([record], DesignModel())
+    result = judge(case, SearchRules(most=1), DecisionRules(), lambda _w, _s: None)
+    *others, last = result.decisions
+    found = last.findings
+    more = replace(found, channel=replace(found.channel, half=half), none=replace(found.none, mse=mse))
+    missed = replace(last, findings=more, accepted=more.none, explained=False, gap=True)
+    sensing = sense([record], case.noise, DesignModel().travel, DesignModel().rate_limit)
+    judgement = pronounce(replace(result, decisions=(*others, missed)), sensing, 0.0, Weights())
+    assert judgement.verdict == verdict
+
+
+def _fine(trial: Trial) -> tuple[np.ndarray, np.ndarray]:
+    """Fine points and rows on one axis."""
+    return np.arange(trial.grid.n_fine, dtype=float), trial.grid.offsets.astype(float)
