@@ -149,7 +149,8 @@ S_ROOT = S_TABLE + TABLE  # drift of the zero with the root of time [position/s^
 S_ROOT_SINCE_S = S_ROOT + 1  # and how much of that time has been [s]
 S_PICKS = S_ROOT_SINCE_S + 1  # what the reading picks up of the pressure [position/pressure]
 S_PICKS_FROM = S_PICKS + 1  # and the pressure at which that is nothing [pressure]
-S_COUNT = S_PICKS_FROM + 1
+S_LEADS_S = S_PICKS_FROM + 1  # what the reading picks up of the speed of the stem [s]
+S_COUNT = S_LEADS_S + 1
 
 FOREVER = 1e30
 

@@ -61,6 +61,7 @@ def answered(*records: Recording) -> Outcome:
         (with_form("nonlinear_spring", "stem_snaps", 0.7, 0.55, 0.5), SNAPS),
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),
         (with_form("lvdt_calibration", "picks_up", 0.02, 0.0), "the reading picks up the pressure or the command"),
+        (with_form("sensor_lag", "leads", 0.5), "the reading picks up the speed of the stem"),
     ],
 )
 def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: str) -> None:
@@ -95,6 +96,19 @@ def test_a_reading_picks_up_what_the_pressure_is_above_that_of_a_closing_stem() 
     np.testing.assert_allclose(reading, expected, atol=1e-12)
 
 
+def test_a_reading_picks_up_the_speed_of_the_stem() -> None:
+    """On fine steps of two sizes: it is on the reading as long as the stem moves, and gone when it stands."""
+    time_s = np.append(0.1 * np.arange(200), 19.9 + 0.5 * np.arange(1, 100))
+    grid = make_grid(time_s, 0.03)
+    t = grid.fine_time_s
+    stem = 0.02 * np.clip(t - 5.0, 0.0, 20.0)
+    reading = reading_response(with_form("sensor_lag", "leads", 0.4).coefficients(70.0), grid, stem, np.zeros(t.size))
+    moves = (time_s > 5.2) & (time_s < 24.8)
+    stands = (time_s < 4.9) | (time_s > 25.2)
+    np.testing.assert_allclose(reading[moves], stem[grid.offsets][moves] + 0.4 * 0.02, atol=1e-12)
+    np.testing.assert_allclose(reading[stands], stem[grid.offsets][stands], atol=1e-12)
+
+
 def test_where_the_stem_begins_goes_by_what_its_reading_picks_up() -> None:
     """A record that begins in the middle of the band: the stem is where the reading is, less what it picks up."""
     record = a_record(Plant(DESIGN))
@@ -109,7 +123,15 @@ def test_where_the_stem_begins_goes_by_what_its_reading_picks_up() -> None:
 def test_what_it_resembles_is_named_as_before() -> None:
     steady = ("ep_calibration", "gain_and_zero", (0.006, -0.06))
     spread = ("distributed_hysteresis", "uniform", (0.4,))
-    alike = (("lvdt_drift", "warm_up", (0.02, 150.0)), ("dead_time", "pure_delay", (0.5,)), ORIFICE, steady, spread)
+    slow = ("creep", "one_tail", (0.15, 8.0))
+    alike = (
+        slow,
+        ("lvdt_drift", "warm_up", (0.02, 150.0)),
+        ("dead_time", "pure_delay", (0.5,)),
+        ORIFICE,
+        steady,
+        spread,
+    )
     for name, form, values in alike:
         found = answered(a_record(with_form(name, form, *values))).diagnosis
         assert [c.name for c in found.causes] == [name]
@@ -138,6 +160,7 @@ def test_no_rival_is_in_an_updated_model() -> None:
         alike,
         drifts,
         picks_up,
+        ("sensor_lag", "leads"),
         *snaps,
     }
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.lags import lag_parameter
-from twin.slots import S_LAG2_S, S_LAG_S, S_WINDOW_S, S_WINDOWS
+from twin.slots import S_LAG2_S, S_LAG_S, S_LEADS_S, S_WINDOW_S, S_WINDOWS
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -30,12 +30,27 @@ def _lag(doc: str) -> tuple[Parameter]:
     return lag_parameter(doc, usual=(0.1, 3.0))
 
 
+def _leads(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_LEADS_S] = values[0]
+
+
+_LEAD = Parameter(
+    name="lead",
+    kind="time",
+    lower=0.0,
+    upper=8.0,
+    starts=(0.1, 0.5),
+    scale=0.5,
+    doc="what the reading picks up of the speed of the stem, over that speed",
+)
+
 EFFECT = Effect(
     name="sensor_lag",
     stage="sensor",
     claim="The reading is low-pass filtered.",
     equations="dy/dt = (x - y) / lag; two_poles: half the lag, twice over, one behind the other; "
-    "running_mean: the mean over the last 2 lag; running_mean_twice: over the last lag, and that once more",
+    "running_mean: the mean over the last 2 lag; running_mean_twice: over the last lag, and that once more; a reading "
+    "that leads is no lag, only told from what it resembles: y = x + lead dx/dt",
     source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments; "
     "Oppenheim, Schafer, Discrete-Time Signal Processing, 3rd ed. (Pearson 2010), moving average",
     forms=(
@@ -43,6 +58,7 @@ EFFECT = Effect(
         Form("two_poles", _lag("time constants of the two equal poles together"), _twice),
         Form("running_mean", _lag("mean delay of the reading, half the window that it is averaged over"), _mean),
         Form("running_mean_twice", _lag("mean delay of the reading, the window that it is averaged over"), _mean_twice),
+        Form("leads", (_LEAD,), _leads, outside="the reading picks up the speed of the stem"),
     ),
     twins=("additional_lag", "dead_time"),
     absorbs=("tau",),

@@ -1,6 +1,7 @@
 """The position sensor: stem on the fine grid in, reading at the sample instants out.
 
-Order of the parts: linkage play, curvature, gain and zero with drift, low-pass, mean, refresh (hold), resolution.
+Order of the parts: what it picks up of the speed, linkage play, curvature, gain and zero with drift, low-pass, mean,
+refresh (hold), resolution.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ from twin.slots import (
     S_KNOTS,
     S_LAG2_S,
     S_LAG_S,
+    S_LEADS_S,
     S_LEAVES,
     S_OTHER,
     S_PLAY,
@@ -63,6 +65,8 @@ def sensor_kernel(
     taken_s: FloatArray | None = None,
 ) -> None:
     """Fills `out` (shape (n,)) with the reading; `taken_s`: when each was taken, where that is not at its row."""
+    if c[S_LEADS_S] != 0.0:
+        stem = leading(elapsed_s(time_s, offsets), stem, c[S_LEADS_S])
     core = stem
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
@@ -82,6 +86,14 @@ def sensor_kernel(
         _refresh(time_s, c, out)
     if c[S_STEP] > 0.0:
         out[:] = np.round(out / c[S_STEP]) * c[S_STEP]
+
+
+def leading(t: FloatArray, stem: FloatArray, lead_s: float, speed: float = 0.0) -> FloatArray:
+    """The stem, and `lead_s` times how fast it moved over the step before each point; shapes (n_fine,).
+
+    `speed`: that before the first point [position/s].
+    """
+    return stem + lead_s * np.append(speed, np.diff(stem) / np.diff(t))
 
 
 def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:

@@ -9,10 +9,10 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.play import plain_play
-from twin.kernels.sensor import static_reading
+from twin.kernels.sensor import leading, static_reading
 from twin.live.lag import Lag
 from twin.live.mean import Mean
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG2_S, S_LAG_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG2_S, S_LAG_S, S_LEADS_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
 
 
 class Sensor:
@@ -23,7 +23,7 @@ class Sensor:
 
     def __init__(self, c: FloatArray, origin_s: float, x0: float, core: float = math.nan) -> None:
         self._c = c
-        self._origin_s = origin_s
+        self._origin_s, self._speed = origin_s, 0.0
         half = 0.5 * float(c[S_PLAY])
         self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
         self._lag, self._further = Lag(float(c[S_LAG_S])), Lag(float(c[S_LAG2_S]))
@@ -40,12 +40,15 @@ class Sensor:
     def advance(self, time_s: FloatArray, offsets: np.ndarray, stem: FloatArray) -> float:
         """The reading at the end of the row; `stem` on its fine points."""
         c = self._c
+        t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
+        if c[S_LEADS_S] != 0.0:
+            before, self._speed = self._speed, float((stem[-1] - stem[-2]) / (t[-1] - t[-2]))
+            stem = leading(t, stem, c[S_LEADS_S], before)
         if c[S_PLAY] > 0.0:
             core = np.empty_like(stem)
             plain_play(stem, 0.5 * c[S_PLAY], self._core, core)
             self._core = float(core[-1])
             stem = core
-        t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
         if max(c[S_LAG_S], c[S_LAG2_S], c[S_WINDOW_S]) > 0.0:
             late = self._lag.follow(time_s, offsets, self._static(stem, t))
             late = self._further.follow(time_s, offsets, late)
