@@ -103,6 +103,7 @@ SAME = {
     "nonlinear_spring": (plant_with("nonlinear_spring", "bow", 0.4), PlainValve(bend=bow)),
     "friction_spot": (plant_with("position_dependent_friction", "spot", 0.3, 0.5, 0.15), PlainValve(widen=spot)),
     "flow_at_stem": (plant_with("flow_force", "stem_square", 0.4), PlainValve(push=lambda x: 0.4 * (x / TRAVEL) ** 2)),
+    "flow_hump": (plant_with("flow_force", "stem_hump", 0.4), PlainValve(push=bow)),
     "spring_at_stem": (plant_with("nonlinear_spring", "stem_bow", 0.4), PlainValve(push=bow)),
     "soft_at_stem": (plant_with("nonlinear_spring", "stem_slope", 0.3), PlainValve(stretch=softer)),
     "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),

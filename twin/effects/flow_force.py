@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.shapes import detrended
+from twin.shapes import bow, detrended
 
 #: Opening (fraction of travel) at which the force near the seat peaks.
 PEAK = 0.12
@@ -70,6 +70,11 @@ def _stem_square(c: Coefficients, values: Sequence[float]) -> None:
     _push_stem(c, values[0] * np.square(c.xi))
 
 
+def _stem_hump(c: Coefficients, values: Sequence[float]) -> None:
+    # A larger opening passes more and leaves less of the pressure drop: most force is in the middle.
+    _push_stem(c, values[0] * bow(c.xi))
+
+
 def _stem_seat(c: Coefficients, values: Sequence[float]) -> None:
     _stem_suction(c, (values[0], PEAK))
 
@@ -91,8 +96,8 @@ EFFECT = Effect(
     stage="actuator",
     claim="Fluid through the valve pushes the plug, depending on opening.",
     equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
-    "shape: (1 - opening)^2, or a peak at 12 % opening, or exp(-opening/0.12), suction: "
-    "exp(-opening/within); stem_*: f of the stem x, with its line",
+    "shape: (1 - opening)^2, or 4 opening (1 - opening) (hump), or a peak at 12 % opening, or exp(-opening/0.12), "
+    "suction: exp(-opening/within); stem_*: f of the stem x, with its line",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5; Borden (ed.), Control Valves (ISA 1998)",
     forms=(
         Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
@@ -101,6 +106,7 @@ EFFECT = Effect(
         Form("suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _suction),
         Form("stem_linear", _force("force at closed, growing in proportion to closure, as pressure"), _stem_linear),
         Form("stem_square", _force("force at closed, growing with the square of closure, as pressure"), _stem_square),
+        Form("stem_hump", _force("force at half opening, none at either end, as pressure"), _stem_hump),
         Form("stem_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _stem_seat),
         Form(
             "stem_suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _stem_suction
@@ -110,7 +116,7 @@ EFFECT = Effect(
     odds=0.05,  # most benches are dry
     absorbs=("compliance", "offset"),
     same_as=dict.fromkeys(
-        ("throttling", "near_seat", "at_seat", "suction", "stem_square", "stem_seat", "stem_suction"),
+        ("throttling", "near_seat", "at_seat", "suction", "stem_square", "stem_hump", "stem_seat", "stem_suction"),
         ("nonlinear_spring",),
     ),
 )
