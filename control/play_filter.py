@@ -75,8 +75,13 @@ class Belief:
         h = ((a, -self.compliance), (K, lever))
         return math.sqrt(max(dot(h, times(_square(self.spread), h)), 0.0))
 
+    def landing_doubt_in(self, side: int) -> float:
+        """The same of where the play output is now, whatever the pressure is at present [in]."""
+        h = ((A1 if side > 0 else A2, -self.compliance), (K, self.inside.w / self.compliance))
+        return math.sqrt(max(dot(h, times(_square(self.spread), h)), 0.0))
+
     def edge_doubt_psi(self, side: int) -> float:
-        """The same as a pressure [psi]."""
+        """`edge_doubt_in` as a pressure [psi]."""
         return self.edge_doubt_in(side) / self.compliance
 
     def went_in(self, ticks: float) -> float:

@@ -2,44 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 from control.aims import parked_psi, stop_psi
+from control.brake_state import BrakeState
 from control.controller import Law, Seen
+from control.detour import FURTHER, TIMES, gains, hardly_known, over_psi
 from control.exact import lag
 from control.grip import Grip
-from control.lateness import Lateness
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
 from control.resting import Resting, in_vain, is_beyond, way_of_stroke
 
 GIVEN_UP = 99  # turns after which a target is left alone
-
-
-@dataclass(frozen=True, slots=True)
-class BrakeState:
-    """The belief for the next reading; `drive` is +1 closing, -1 opening, 0 settling; the aim [psi], and for how long
-    it has not changed [s]; the belief when the edges were last known well; whether the valve sticks; how often it has
-    been turned back or stroked for this target; whether it is being pushed, and how often the same way (+ closing); how
-    long the drive has lasted [s], and from where [in]; edge [psi], play output [in] and doubt of the edge [psi] when
-    the pushing began; what the readings say of the rest since the last drive; how late they are; whether it slides."""
-
-    belief: Belief
-    target_in: float
-    aim_psi: float
-    drive: int = 0
-    quiet_s: float = 0.0
-    found: Belief | None = None
-    sticks: bool = False
-    turns: int = 0
-    pushing: bool = False
-    pushes: int = 0
-    driven_s: float = 0.0
-    from_in: float = 0.0
-    mark: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    rest: Resting = field(default_factory=Resting)
-    late: Lateness = field(default_factory=Lateness)
-    grip: Grip = field(default_factory=Grip)
+LEFT = 1.5  # times as large as a new one a miss has to be that was left alone, to be pushed through the gap
 
 
 @dataclass(frozen=True)
@@ -55,7 +31,8 @@ class Brake(Law[BrakeState]):
     what they seemed to teach is forgotten; from then on every correction is a stroke of `stroke_psi` beyond the edge
     and back, which slides from start to end, after `look_s` of rest, and turns round only `free_psi` beyond the edge,
     where the plate has let go; at most `strokes` per target, and none that takes longer than `stroke_s`; what was left
-    alone for `while_s` stays, unless it is larger than a new miss may be. Each turn makes it more tolerant.
+    alone for `while_s` stays, unless it is larger than a new miss may be. Each turn makes it more tolerant. Detours: an
+    edge that is hardly known does not push; the plate goes beyond it and comes back by the other, `TIMES` per target.
     """
 
     tolerance_in: float = 0.0007
@@ -80,13 +57,15 @@ class Brake(Law[BrakeState]):
     def law(self, state: BrakeState, seen: Seen, target_in: float, dt_s: float) -> tuple[BrakeState, float]:
         keep, soon = self._filter.track(state.belief, seen, dt_s, state.late)
         fresh, before_psi = abs(target_in - state.target_in) > 1e-4, state.aim_psi
-        state = replace(state, belief=keep, target_in=target_in)
-        state = replace(state, turns=0, pushes=0, rest=Resting(), grip=Grip()) if fresh else state
+        state = replace(state.at(target_in) if fresh else state, belief=keep, target_in=target_in)
         rest = state.rest.read(*(place_in - target_in for place_in in (seen.position_in, soon.inside.x, soon.inside.w)))
         grip = state.grip.read(seen, soon, (target_in, before_psi), self.design, dt_s)
         state, soon = self._gripped(replace(state, rest=Resting() if state.drive else rest, grip=grip), soon)
         late = state.late.read(self._filter.observer(soon), seen.position_in, seen.pressure_psi, dt_s)
         drive = self._begun(state, soon, fresh)
+        if not drive and not fresh and self._worth_a_detour(state, soon):
+            drive, far_psi = _sign(target_in - soon.inside.w), over_psi(soon, target_in - soon.inside.w)
+            state = replace(state, over_psi=far_psi, detours=state.detours + 1, turns=0, pushes=0)
         if drive and not state.drive:
             late = late.begun(drive, soon.inside, soon.edge_psi(soon.inside.x, drive), target_in, seen.pressure_psi)
         state = replace(state, late=late)
@@ -103,9 +82,12 @@ class Brake(Law[BrakeState]):
         stroke = state.sticks and turns > 0
         from_in = state.from_in if state.drive else soon.inside.x
         gone_psi = drive * (soon.inside.p - soon.edge_psi(from_in, drive))
-        held = stroke and (not state.drive or gone_psi < self.free_psi)
-        aim_psi, drive = self._driven(soon, state, drive, dt_s, held)
+        free_psi = self.free_psi if stroke else state.over_psi if state.driven_s < self.stroke_s else 0.0
+        held = free_psi > 0.0 and (not state.drive or gone_psi < free_psi)
+        way, (aim_psi, drive) = drive, self._driven(soon, state, drive, dt_s, held)
         after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False, from_in=from_in)
+        if state.over_psi and not drive:  # the other edge brings the plate back now: whether it sticks is watched anew
+            after = replace(after, over_psi=0.0, grip=Grip(side=-way))
         still = abs(soon.inside.x - from_in) < 2.0 * self.again_in
         if stroke and state.driven_s > self.stroke_s and still:  # what it seemed to teach is forgotten
             belief = state.belief.with_numbers(state.found) if state.found else state.belief
@@ -119,7 +101,8 @@ class Brake(Law[BrakeState]):
             d, stop_in = self.design, self.design.travel if target_in > 0.5 * self.design.travel else 0.0
             aim_psi = stop_psi(soon, stop_in, state.aim_psi, self.again_in, d.rate_limit * d.tau_s)
             return replace(state, aim_psi=aim_psi, found=None)
-        side = 0 if state.sticks else self._pushed(soon, target_in, state.turns)
+        waits = state.sticks or self._wants_a_detour(state, soon)
+        side = 0 if waits else self._pushed(state, soon)
         if not side:
             rests = state.quiet_s > self.patience_s
             return replace(state, aim_psi=parked_psi(soon, state.aim_psi, self.retreat_psi) if rests else state.aim_psi)
@@ -173,14 +156,26 @@ class Brake(Law[BrakeState]):
         if not state.sticks:
             return way if far and state.turns < GIVEN_UP else 0
         lands = abs(state.aim_psi - soon.inside.p) > 0.2
-        if (far and not lands and state.turns < GIVEN_UP) or self._worth_a_stroke(state, soon, off_in):
+        strokes = state.turns < self.strokes and self._beyond_doubt(state, soon, off_in)
+        if (far and not lands and state.turns < GIVEN_UP) or strokes:
             return way_of_stroke(soon, off_in, soon.compliance * self.stroke_psi)
         return 0
 
-    def _worth_a_stroke(self, state: BrakeState, soon: Belief, off_in: float) -> bool:
-        """Whether a miss is: beyond doubt and, after a while, larger than what was left alone until then."""
+    def _wants_a_detour(self, state: BrakeState, soon: Belief) -> bool:
+        """Whether a miss, if there is one, is not for a push through the gap: the first times for each target."""
+        miss_in = state.target_in - soon.inside.w
+        not_now = state.sticks or state.late.known_s > 0.0 or self._touches(soon, _sign(miss_in))
+        return state.detours < TIMES and not not_now and hardly_known(soon, miss_in)
+
+    def _worth_a_detour(self, state: BrakeState, soon: Belief) -> bool:
+        miss_in = state.target_in - soon.inside.w
+        settles = not (state.drive or self._is_stop(state.target_in)) and self._beyond_doubt(state, soon, miss_in)
+        return settles and self._wants_a_detour(state, soon) and gains(soon, miss_in)
+
+    def _beyond_doubt(self, state: BrakeState, soon: Belief, off_in: float) -> bool:
+        """Whether a miss is worth a stroke: beyond doubt and, after a while, larger than what was left alone."""
         enough_in = (1.5 if state.quiet_s < self.while_s else 2.2) * self.tolerance_in + 2.0 * soon.doubt_in
-        return state.quiet_s > self.look_s and state.turns < self.strokes and abs(off_in) > enough_in
+        return state.quiet_s > self.look_s and abs(off_in) > enough_in
 
     def _driven(self, soon: Belief, state: BrakeState, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
         """The aim of the next tick [psi], and whether the drive goes on after it. It brakes a little short, because
@@ -194,7 +189,8 @@ class Brake(Law[BrakeState]):
             return drive * (self._landing_in(soon, aim_psi, brake_psi, target_in, drive, dt_s) - target_in)
 
         if stroke:
-            least_psi = soon.edge_psi(soon.inside.w, drive) + drive * self.stroke_psi
+            beyond_psi = FURTHER * state.over_psi or self.stroke_psi
+            least_psi = soon.edge_psi(soon.inside.w, drive) + drive * beyond_psi
             if beyond_in(least_psi) >= 0.0:
                 return least_psi, drive
         elif beyond_in(brake_psi) >= -0.0003:
@@ -219,9 +215,13 @@ class Brake(Law[BrakeState]):
             inside = observer.ahead(inside, self._command_psi(inside, brake_psi, dt_s), dt_s)
         return inside.x
 
-    def _pushed(self, soon: Belief, target_in: float, turns: int) -> int:
-        miss_in = target_in - soon.inside.w
-        return _sign(miss_in) if abs(miss_in) > self._allowed_in(soon, turns) else 0
+    def _pushed(self, state: BrakeState, soon: Belief) -> int:
+        """The side of the edge that should push, 0 for none. Through the gap, what was left alone for a while after a
+        detour has to be worth more than a new miss."""
+        miss_in = state.target_in - soon.inside.w
+        side = _sign(miss_in)
+        left = LEFT if state.detours and state.quiet_s > self.while_s and not self._touches(soon, side) else 1.0
+        return side if abs(miss_in) > left * self._allowed_in(soon, state.turns) else 0
 
     def _push_psi(self, soon: Belief, target_in: float, side: int, count: int) -> float:
         """To the edge; through the deadband a little short of it, because pushing on is cheaper than turning back. What
