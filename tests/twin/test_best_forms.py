@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
+from tests.twin.test_outside import a_fit
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose import search
@@ -36,4 +37,5 @@ def test_a_law_goes_on_where_a_curve_only_follows_what_wanders(monkeypatch: pyte
 
 
 def test_of_nothing_there_is_no_best_form() -> None:
-    assert best_forms([], np.ones(1, dtype=np.bool_)) == []
+    none = a_fit((), 1.0)
+    assert best_forms([], np.ones(1, dtype=np.bool_), none) == []

@@ -16,7 +16,6 @@ from tests.twin.judged import UP_TO_TWO, a_record
 from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.decide import Decision
-from twin.choose.needless import without_needless
 from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
@@ -35,7 +34,6 @@ ALIKE = "a damping that grows with the speed, the same both ways"
 SNAPS = "the spring gives way at a place, and the stem snaps through"
 
 
-CALIBRATION = effect("ep_calibration")
 ORIFICE = ("asymmetric_damping", "orifice_each_way", (1.5, 0.5))
 
 
@@ -228,24 +226,6 @@ def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:
         decision = Decision(findings, both, True, True, 0.0)
         assert inside(decision).names == names
         assert inside(replace(decision, accepted=alone)).names == ("sensor_lag",)
-
-
-def test_a_drift_of_a_trifle_beside_a_zero_is_a_wander() -> None:
-    """A rival counts where the known form leaves more than a healthy machine, or much of a small gap, or is freer."""
-    zero, drifts = (Cause("ep_calibration", CALIBRATION, CALIBRATION.form(f)) for f in ("zero", "zero_drifts"))
-    for gap, left, needed in ((31.9, 1.14, False), (31.9, 1.5, True), (3.0, 1.14, True), (3.0, 1.05, False)):
-        fits = [a_fit((zero,), left), a_fit((drifts,), 0.98)]
-        assert without_needless(fits, a_fit((), gap)) == fits[: 2 if needed else 1]
-    damping = effect("asymmetric_damping")
-    free, rival = (Cause(damping.name, damping, damping.form(f)) for f in ("orifice_each_way", "orifice_alike"))
-    for fits in ([a_fit((drifts,), 0.98)], [a_fit((free,), 0.98), a_fit((rival,), 0.98)]):
-        assert without_needless(fits, a_fit((), 31.9)) == fits
-
-
-@pytest.mark.thorough
-def test_a_zero_under_a_pressure_that_wanders_is_named() -> None:
-    found = answered(a_record(with_form("ep_calibration", "zero_drifts", 0.05, -0.008, 120.0))).diagnosis
-    assert [c.name for c in found.causes] == ["ep_calibration"]
 
 
 def a_fit(causes: tuple[Cause, ...], mse: float) -> Fit:

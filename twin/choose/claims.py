@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.choose.needless import without_needless
 from twin.choose.score import yardstick_for
 from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
@@ -63,12 +64,14 @@ def _is_nothing(fit: Fit, covariance: FloatArray, which: list[int]) -> bool:
     return float(sizes @ np.linalg.pinv(covariance[np.ix_(which, which)]) @ sizes) < len(which)
 
 
-def best_forms(fits: Sequence[Fit], use: np.ndarray) -> list[Fit]:
+def best_forms(fits: Sequence[Fit], use: np.ndarray, none: Fit) -> list[Fit]:
     """Of the same causes in different forms only the best: a wrong form must not lose to a wrong cause.
 
     By the yardstick by which causes are compared, too. One that took every residual sample for an independent one would
-    choose the form with most numbers, which then loses by them to a wrong cause. `use`: the rows that count.
+    choose the form with most numbers, which then loses by them to a wrong cause. `use`: the rows that count;
+    `none`: the hypothesis of no cause. A rival from outside that a known form does without is no better one.
     """
+    fits = without_needless(fits, none)
     if not fits:
         return []
     ranked = sorted(fits, key=yardstick_for(fits, use).score)

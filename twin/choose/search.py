@@ -15,7 +15,6 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
-from twin.choose.needless import without_needless
 from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import promising_pairs
 from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
@@ -110,7 +109,7 @@ class Searcher:
             fits = nested(self.channel, fits, self.rules.rounds, pool)
             fits = beyond_retuning(self.channel, fits, retuned, self.rules.rounds, pool)
         self.tried[:] = [f for f in fits if len(f.names) == 1]
-        return self._polished(self._best_forms(fits))
+        return self._polished(best_forms(fits, self.channel.use, self.origins[0]))
 
     def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
         """Every hypothesis of the beam with one more cause, of those that promise something."""
@@ -127,8 +126,8 @@ class Searcher:
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
         if size == 2:
             fits += self._paired([c for c in singles if c.form is not None])
-            fits += self._reformed(self._best_forms(fits))
-        return self._polished(self._best_forms(fits))
+            fits += self._reformed(best_forms(fits, self.channel.use, self.origins[0]))
+        return self._polished(best_forms(fits, self.channel.use, self.origins[0]))
 
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
@@ -148,10 +147,8 @@ class Searcher:
         causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
         likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
-        return self._best_forms(self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts"))
-
-    def _best_forms(self, fits: Sequence[Fit]) -> list[Fit]:
-        return best_forms(without_needless(fits, self.origins[0]), self.channel.use)
+        fits = self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts")
+        return best_forms(fits, self.channel.use, self.origins[0])
 
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
         """What stands beside the likeliest hypotheses and was not fitted on the way up.

@@ -1,0 +1,31 @@
+"""A rival from outside of the vocabulary gives way to a plainer known form that explains all but a trifle."""
+
+from __future__ import annotations
+
+import pytest
+
+from tests.twin.judged import a_record
+from tests.twin.test_outside import a_fit, answered, with_form
+from twin.catalog import effect
+from twin.choose.needless import without_needless
+from twin.fit.space import Cause
+
+CALIBRATION = effect("ep_calibration")
+
+
+def test_a_drift_of_a_trifle_beside_a_zero_is_a_wander() -> None:
+    """A rival counts where the known form leaves more than a healthy machine, or much of a small gap, or is freer."""
+    zero, drifts = (Cause("ep_calibration", CALIBRATION, CALIBRATION.form(f)) for f in ("zero", "zero_drifts"))
+    for gap, left, needed in ((31.9, 1.14, False), (31.9, 1.5, True), (3.0, 1.14, True), (3.0, 1.05, False)):
+        fits = [a_fit((zero,), left), a_fit((drifts,), 0.98)]
+        assert without_needless(fits, a_fit((), gap)) == fits[: 2 if needed else 1]
+    damping = effect("asymmetric_damping")
+    free, rival = (Cause(damping.name, damping, damping.form(f)) for f in ("orifice_each_way", "orifice_alike"))
+    for fits in ([a_fit((drifts,), 0.98)], [a_fit((free,), 0.98), a_fit((rival,), 0.98)]):
+        assert without_needless(fits, a_fit((), 31.9)) == fits
+
+
+@pytest.mark.thorough
+def test_a_zero_under_a_pressure_that_wanders_is_named() -> None:
+    found = answered(a_record(with_form("ep_calibration", "zero_drifts", 0.05, -0.008, 120.0))).diagnosis
+    assert [c.name for c in found.causes] == ["ep_calibration"]
