@@ -92,6 +92,18 @@ def test_behind_a_play_it_is_like_springs_stepped_behind_one(share: float) -> No
     assert np.max(np.abs(got - stepped(0.02, share=share))) < 0.001 * 0.5625
 
 
+def test_all_of_the_friction_behind_no_play_is_the_elastic_form() -> None:
+    """Its soft stops, too."""
+    effects = effect("friction_in_motion")
+    whole, part = (
+        stem(Plant(DesignModel(), [Inserted(effects.name, effects.form(name), values)]))
+        for name, values in (("elastic", (0.02, 0.03, 0.05)), ("partial_elastic", (1.0, 0.02, 0.03, 0.05)))
+    )
+    rigid = stem(Plant(DesignModel(), [Inserted(effects.name, effects.form("elastic"), (0.02, 0.0, 0.0))]))
+    np.testing.assert_allclose(part, whole, atol=1e-12)
+    assert np.max(np.abs(whole - rigid)) > 0.002
+
+
 def test_it_falls_with_the_speed_as_in_small_steps() -> None:
     """A stem whose friction grows as it slows down stops short; the springs hold it there."""
     falling = (0.15, 0.03)

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.fit.fitting import Fit
+from twin.fit.space import Cause
 
 #: Of the excess over the noise, what known causes may leave at the most without something from outside of the
 #: vocabulary: they take over what they can of its part, and to explain the rest is no proof of them.
@@ -21,20 +22,15 @@ _HEALTHY = 1.3
 def without_needless(fits: Sequence[Fit], none: Fit) -> list[Fit]:
     """`fits` without those from outside whose causes explain all but a trifle in a known form. `none`: no cause."""
     enough = min(_HEALTHY, 1.0 + LEAVES * max(none.mse - 1.0, 0.0))
-    known = [f for f in fits if not _outside(f) and f.mse <= enough]
-    plain: dict[tuple[str, ...], int] = {}
-    for f in known:
-        plain[_claim(f)] = min(plain.get(_claim(f), _numbers(f)), _numbers(f))
-    return [f for f in fits if not (_outside(f) and plain.get(_claim(f), _numbers(f)) < _numbers(f))]
+    known = [f for f in fits if rival_in(f) is None and f.mse <= enough]
+    return [f for f in fits if rival_in(f) is None or not any(_is_plainer(k, f) for k in known)]
 
 
-def _claim(fit: Fit) -> tuple[str, ...]:
-    return tuple(sorted(fit.names))
+def _is_plainer(known: Fit, rival: Fit) -> bool:
+    """Whether a hypothesis of the same causes has fewer numbers."""
+    return set(known.names) == set(rival.names) and len(known.space.unknowns) < len(rival.space.unknowns)
 
 
-def _numbers(fit: Fit) -> int:
-    return len(fit.space.unknowns)
-
-
-def _outside(fit: Fit) -> bool:
-    return any(c.form is not None and c.form.outside for c in fit.space.causes)
+def rival_in(fit: Fit) -> Cause | None:
+    """The cause of a hypothesis that lies outside of the vocabulary, if any."""
+    return next((c for c in fit.space.causes if c.form is not None and c.form.outside), None)

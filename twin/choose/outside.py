@@ -6,15 +6,14 @@ Without them the nearest known effect would be named for what it only resembles:
 from __future__ import annotations
 
 from twin.choose.decide import Decision
-from twin.choose.needless import LEAVES
+from twin.choose.needless import LEAVES, rival_in
 from twin.choose.trim import dropped
 from twin.fit.space import Cause
 
 
 def outside_of(decision: Decision) -> Cause | None:
     """What is accepted and lies outside of the vocabulary, if anything."""
-    causes = decision.accepted.space.causes if decision.explained else ()
-    return next((c for c in causes if c.form is not None and c.form.outside), None)
+    return rival_in(decision.accepted) if decision.explained else None
 
 
 def inside(decision: Decision) -> Decision:

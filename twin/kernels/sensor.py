@@ -88,12 +88,9 @@ def sensor_kernel(
         out[:] = np.round(out / c[S_STEP]) * c[S_STEP]
 
 
-def leading(t: FloatArray, stem: FloatArray, lead_s: float, speed: float = 0.0) -> FloatArray:
-    """The stem, and `lead_s` times how fast it moved over the step before each point; shapes (n_fine,).
-
-    `speed`: that before the first point [position/s].
-    """
-    return stem + lead_s * np.append(speed, np.diff(stem) / np.diff(t))
+def leading(t: FloatArray, stem: FloatArray, lead_s: float) -> FloatArray:
+    """The stem, and `lead_s` times how fast it moved over the step before each point, 0 at the first."""
+    return stem + lead_s * np.append(0.0, np.diff(stem) / np.diff(t))
 
 
 def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:

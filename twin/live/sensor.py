@@ -23,7 +23,7 @@ class Sensor:
 
     def __init__(self, c: FloatArray, origin_s: float, x0: float, core: float = math.nan) -> None:
         self._c = c
-        self._origin_s, self._speed = origin_s, 0.0
+        self._origin_s = origin_s
         half = 0.5 * float(c[S_PLAY])
         self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
         self._lag, self._further = Lag(float(c[S_LAG_S])), Lag(float(c[S_LAG2_S]))
@@ -42,8 +42,7 @@ class Sensor:
         c = self._c
         t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
         if c[S_LEADS_S] != 0.0:
-            before, self._speed = self._speed, float((stem[-1] - stem[-2]) / (t[-1] - t[-2]))
-            stem = leading(t, stem, c[S_LEADS_S], before)
+            stem = leading(t, stem, c[S_LEADS_S])  # the first point is the last of the row before, and counts no more
         if c[S_PLAY] > 0.0:
             core = np.empty_like(stem)
             plain_play(stem, 0.5 * c[S_PLAY], self._core, core)

@@ -64,6 +64,15 @@ def test_a_stem_held_by_its_tails_begins_where_it_was_read(form: str) -> None:
     assert np.abs(whole - forgetful)[30:].max() > 0.005
 
 
+def test_a_loose_core_with_a_lead_is_not_pushed_to_and_fro_at_each_row() -> None:
+    names = [("sensor_lag", "leads"), ("linkage_lost_motion", "play")]
+    plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
+    record, start = jagged_record(), Start(9.0, 0.1, 0.1)
+    _, position = live(plant, record, start)
+    _, whole = simulate_recording(plant, record, start=start)
+    assert np.max(np.abs(position - whole)) < 1e-9
+
+
 def test_a_spread_of_plays_with_friction_in_the_motion_begins_at_rest() -> None:
     names = [("distributed_hysteresis", "uniform"), ("friction_in_motion", "full")]
     plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
