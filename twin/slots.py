@@ -107,7 +107,10 @@ V_SQUARED_S = (
     49  # what drag adds to the lag of a stem that closes, and (50) opens, for each unit of speed [s2/position]
 )
 V_KEPT = 51  # how far friction that is the same at any speed keeps the stem from its target [position]
-V_COUNT = 52
+V_GIVE_LOW = 52  # of what the stem is pulled beyond its lower stop, the share that still pulls it there [-]; 1: all
+V_GIVE_HIGH = 53
+V_FADES_SQUARED = 54  # 1: the extra friction falls with the square of the speed, as a Gaussian curve
+V_COUNT = 55
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -189,6 +192,7 @@ def _valve() -> FloatArray:
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
+    c[[V_GIVE_LOW, V_GIVE_HIGH]] = 1.0
     c[V_TRAVEL] = 1.0
     return c
 

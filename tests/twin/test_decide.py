@@ -37,6 +37,13 @@ def test_a_third_cause_has_to_explain_part_of_the_gap(count: int, mse: tuple[flo
     assert _worth(findings, small, large, DecisionRules(), 1.0) is wanted
 
 
+@pytest.mark.parametrize(("gap", "wanted"), [(4571.0, False), (2000.0, True), (400.0, True)])
+def test_a_second_cause_is_no_trifle_beside_the_gap(gap: float, wanted: bool) -> None:
+    """Behind a supply that is 8 psi low, its own form left 1.3 noise variances, which a port would have taken."""
+    findings: Any = SimpleNamespace(none=fitted(0, gap), score=lambda one: -100.0 * one.mse)
+    assert _worth(findings, fitted(1, 2.56), fitted(2, 1.26), DecisionRules(), 1.0) is wanted
+
+
 @pytest.mark.parametrize(
     ("mse", "first", "wanted"),
     [

@@ -3,79 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 
 from control.design import DesignModel
-from logs.recording import FloatArray
 from tests.twin.loops import advanced
+from tests.twin.springs import LONG, PRESSURE, START, TIME_S, plant, stem, stem_from, stepped
 from twin.catalog import effect
 from twin.kernels.elastic import SPRINGS, stretches
 from twin.plant import Inserted, Plant, stem_response
 from twin.slots import V_PRESLIDING, V_TAU_AFTER_S
 from twin.timegrid import make_grid
-
-TIME_S = np.arange(0.0, 60.0, 0.05)
-#: Up and down through the deadband with an inner loop, and a jump.
-PRESSURE = np.interp(
-    TIME_S, [0, 14, 20, 23, 27, 34, 34.5, 44, 46, 60], [9.5, 15.5, 13.0, 14.2, 12.3, 14.3, 16.0, 10.0, 11.5, 15.0]
-)
-#: Where the stem is pulled to at first, with all friction turned as after opening.
-START = 0.19 * (9.5 - 5.82)
-#: So long a travel that no element of the spread comes near a stop.
-LONG = replace(DesignModel(), travel=2.0)
-
-
-def plant(presliding: float, in_motion: bool = True, falling: tuple[float, float] | None = None) -> Plant:
-    """The thesis's valve with friction in the force balance that turns over `presliding` [in].
-
-    `falling`: by how much more of it there is at no speed [psi], and the speed at which 1/e of that is left [in/s].
-    """
-    causes = [
-        Inserted(
-            "distributed_hysteresis", effect("distributed_hysteresis").form("turns_over_a_distance"), (presliding,)
-        )
-    ]
-    if in_motion:
-        causes.append(Inserted("friction_in_motion", effect("friction_in_motion").form("full"), ()))
-    if falling is not None:
-        causes.append(Inserted("stiction", effect("stiction").form("falling_with_speed"), falling))
-    return Plant(LONG, causes)
-
-
-def stem(one: Plant, time_s: FloatArray = TIME_S, pressure: FloatArray = PRESSURE, step_s: float = 0.02) -> FloatArray:
-    """The stem at the rows."""
-    grid = make_grid(time_s, step_s)
-    fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, time_s), time_s, pressure)
-    return stem_response(one.coefficients(float(time_s[-1])), grid, fine, START, START)[grid.offsets]
-
-
-def stepped(reach: float, falling: tuple[float, float] = (0.0, 1.0), h: float = 1e-3, share: float = 1.0) -> FloatArray:
-    """The same valve by explicit steps: springs between stem and packing, damping, the highest speed, the stops.
-
-    The speed at which friction has fallen so far (`falling`) is the one that it has then: found by substitution.
-    `share`: of the half deadband, what the springs have; the rest is a play before them.
-    """
-    d, slips = LONG, stretches(reach)
-    held, x, speed, rows = -slips, START, 0.0, [START]
-    wide = 0.5 * d.deadband * (1.0 - share)
-    behind = PRESSURE[0] + wide
-    per = round((TIME_S[1] - TIME_S[0]) / h)
-    for a, b in pairwise(PRESSURE):
-        for k in range(per):
-            turned, p = float(np.mean(held / slips)), a + (b - a) * (k + 0.5) / per
-            behind = min(max(behind, p - wide), p + wide)
-            for _ in range(4 if falling[0] else 1):
-                friction = (0.5 * d.deadband * share + falling[0] * np.exp(-abs(speed) / falling[1])) * turned
-                pull = d.compliance * (behind - d.offset - friction)
-                speed = np.clip((np.clip(pull, 0.0, d.travel) - x) / d.tau_s, -d.rate_limit, d.rate_limit)
-            new = min(max(x + h * speed, 0.0), d.travel)
-            held, x = np.clip(held + new - x, -slips, slips), new
-        rows.append(x)
-    return np.array(rows)
 
 
 @pytest.mark.parametrize("reach", [0.005, 0.06])
@@ -104,12 +43,22 @@ def test_all_of_the_friction_behind_no_play_is_the_elastic_form() -> None:
     assert np.max(np.abs(whole - rigid)) > 0.002
 
 
-def test_it_falls_with_the_speed_as_in_small_steps() -> None:
+@pytest.mark.parametrize(("form", "power"), [("falling_with_speed", 1), ("falling_with_speed_squared", 2)])
+def test_it_falls_with_the_speed_as_in_small_steps(form: str, power: int) -> None:
     """A stem whose friction grows as it slows down stops short; the springs hold it there."""
     falling = (0.15, 0.03)
-    got, even = stem(plant(0.005, falling=falling)), stem(plant(0.005))
-    assert np.max(np.abs(got - stepped(0.005, falling))) < 0.001 * 0.5625
+    got, even = stem(plant(0.005, falling=falling, form=form)), stem(plant(0.005))
+    assert np.max(np.abs(got - stepped(0.005, falling, power=power))) < 0.001 * 0.5625
+    assert np.max(np.abs(got - stepped(0.005, falling, power=3 - power))) > 0.002 * 0.5625
     assert np.max(np.abs(got - even)) > 0.01 * 0.5625
+
+
+@pytest.mark.parametrize("form", ["falling_with_speed", "falling_with_speed_squared"])
+def test_short_springs_that_let_go_with_the_speed_are_such_friction(form: str) -> None:
+    """The other loop knows the same two laws."""
+    falling = Inserted("stiction", effect("stiction").form(form), (0.15, 0.03))
+    full = Plant(LONG, [Inserted("friction_in_motion", effect("friction_in_motion").form("full"), ()), falling])
+    assert np.max(np.abs(stem(plant(1e-6, falling=(0.15, 0.03), form=form)) - stem(full))) < 0.002 * 0.5625
 
 
 def test_short_springs_are_friction_in_motion() -> None:
@@ -183,12 +132,7 @@ def test_stops_hold_the_stem_and_not_what_pulls_it(reach: float) -> None:
     soft = Inserted("friction_in_motion", effect("friction_in_motion").form("elastic"), (reach, 0.05, 0.05))
     rigid = Inserted("friction_in_motion", soft.form, (reach, 0.0, 0.0))
     pressure = np.interp(TIME_S, [0, 10, 30, 35, 60], [4.0, 13.0, 13.0, 4.0, 4.0])
-    grid = make_grid(TIME_S, 0.02)
-    fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S), TIME_S, pressure)
-    met, crept = (
-        stem_response(Plant(DesignModel(), (one,)).coefficients(60.0), grid, fine, 0.0, 0.0)[grid.offsets]
-        for one in (soft, rigid)
-    )
+    met, crept = (stem_from(Plant(DesignModel(), (one,)), pressure, 0.0) for one in (soft, rigid))
     assert met.min() == 0.0 and met.max() == DesignModel().travel
     arrival = TIME_S[np.argmax(met >= DesignModel().travel)]
     assert arrival < 30.0 and crept[arrival + 0.1 > TIME_S].max() < DesignModel().travel - 0.002

@@ -35,12 +35,14 @@ class DecisionRules:
 
     Gains are in units of the noise variance: 1 means as large as the noise itself. `gain` is raised to what a healthy
     machine leaves, where that is known; `further` is what a cause beside others has to gain where they leave more.
+    `share` of the gap is what a further cause has to explain, or, if it explains nearly all of the rest, `trifle`.
     """
 
     gain: float = 0.15
     further: float = 0.15
     evidence: float = 12.0
     share: float = 0.02
+    trifle: float = 0.0005
     thorough: float = 0.55
     complete: float = 0.8
     erratic: float = 0.7
@@ -229,7 +231,8 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence
     # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
-    tidy = gain > rules.complete * left and size_of(large) < 3
+    # ... and so is the little that a second one removes beside a large gap
+    tidy = gain > max(rules.complete * left, rules.trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
     spares = bent_by(small) > _BENT and bent_by(large) < _STRAIGHTER * bent_by(small)
     first = small is findings.none

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import (
     FOREVER,
+    V_GIVE_HIGH,
+    V_GIVE_LOW,
     V_HARD_HIGH,
     V_HARD_LOW,
     V_HIGH,
@@ -80,6 +82,19 @@ def _beyond(where: str) -> Parameter:
     )
 
 
+def _gives(where: str) -> Parameter:
+    return Parameter(
+        name=f"gives_{where}",
+        kind="fraction",
+        lower=0.0,
+        upper=1.0,
+        starts=(0.05,),
+        scale=0.1,
+        doc=f"of what pulls the stem beyond the {where} stop, the share that still moves it there",
+        size=False,
+    )
+
+
 def _full(c: Coefficients, _values: Sequence[float]) -> None:
     c.valve[V_IN_MOTION] = 1.0
 
@@ -119,6 +134,13 @@ def _elastic(c: Coefficients, values: Sequence[float]) -> None:
     c.press_beyond_stops(*values[1:])
 
 
+def _landing(c: Coefficients, values: Sequence[float]) -> None:
+    """A speed control that closes towards the stop ahead: beyond the stop, a share of the pull is left."""
+    presliding, below, above = values
+    _elastic(c, (presliding, below * c.design.travel, above * c.design.travel))
+    c.valve[V_GIVE_LOW], c.valve[V_GIVE_HIGH] = below, above
+
+
 def _loaded(c: Coefficients, values: Sequence[float]) -> None:
     share, load, below, above = values
     _partial(c, values)
@@ -155,7 +177,8 @@ EFFECT = Effect(
     equations="w = max(k (p - a1), min(k (p - a2), x)); partial: a play of (1 - share) (a1 - a2) comes before; "
     "short_of_target: that play is held inside the stops, what pulls the stem is |w - x| less k share (a1 - a2) / 2; "
     "rounded: tau v + share k (a1 - a2) / 2 tanh(v / speed) = k (p - (a1 + a2) / 2) - x behind that play; elastic: "
-    "friction turns over a distance, w is held only beyond the stops, x at the stops; "
+    "friction turns over a distance, w is held only beyond the stops, x at the stops; elastic_landing: beyond a stop "
+    "that the stem lands on softly w goes on by gives times what it would; "
     "partial_elastic: as partial, with such friction and such stops; "
     "partial_loaded: as partial, with friction in proportion to 1 + load (w / travel - 1/2) and such stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
@@ -165,6 +188,7 @@ EFFECT = Effect(
         Form("partial", (_SHARE,), _partial),
         Form("short_of_target", (_SHARE,), _short),
         Form("elastic", (_PRESLIDING, _beyond("lower"), _beyond("upper")), _elastic, described=True),
+        Form("elastic_landing", (_PRESLIDING, _gives("lower"), _gives("upper")), _landing, described=True),
         Form("rounded", (_SHARE, _SPEED), _rounded),
         Form("full_hit", (), _full_hit),
         Form("partial_hit", (_SHARE,), _partial_hit),

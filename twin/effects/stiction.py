@@ -9,6 +9,7 @@ from twin.slots import (
     FOREVER,
     V_AGING_S,
     V_BREAKAWAY,
+    V_FADES_SQUARED,
     V_HELD,
     V_SHORT,
     V_STICK_SPEED,
@@ -127,6 +128,11 @@ def _falling(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_STRIBECK_SPEED] = values[1]
 
 
+def _falling_squared(c: Coefficients, values: Sequence[float]) -> None:
+    _falling(c, values)
+    c.valve[V_FADES_SQUARED] = 1.0
+
+
 def _held_stem(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_HELD] = values[0] * c.design.compliance
     c.valve[V_STICK_SPEED] = values[1]
@@ -154,6 +160,7 @@ EFFECT = Effect(
     "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
     "held_stem: x stays while |w - x| <= k s; held_stem_pressed: likewise, and w goes k s beyond the stops of x at "
     "most; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
+    "falling_with_speed_squared: likewise with exp(-(dx/dt / fall_speed)^2); "
     "short_of_target: what pulls the stem is |w - x| less k s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4549; "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (Stribeck, growth at rest)",
@@ -165,6 +172,7 @@ EFFECT = Effect(
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("held_stem_pressed", (_BREAKAWAY, _STICK_SPEED), _pressed),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),
+        Form("falling_with_speed_squared", (_BREAKAWAY, _FALL_SPEED), _falling_squared),
         Form("short_of_target", (_SHORT, _FALL_SPEED, _INERTIA), _short),
     ),
     twins=("distributed_hysteresis", "position_dependent_friction"),

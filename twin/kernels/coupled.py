@@ -18,6 +18,7 @@ from twin.slots import (
     V_BREAKAWAY,
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
+    V_FADES_SQUARED,
     V_HELD,
     V_IN_MOTION,
     V_KEPT,
@@ -152,6 +153,13 @@ def _moved(x: float, pulls: Pair, over: Pair, end: float, lag: Pair, drag: Pair)
     return free if abs(free - x) < abs(held - x) else held
 
 
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _faded(quick: float, squared: bool) -> float:
+    """What is left of the friction that falls with the speed, of which `quick` is the share of its own."""
+    left: float = np.exp(-quick * (quick if squared else 1.0))
+    return left
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def coupled_steps(
     time_s: FloatArray,
@@ -181,14 +189,14 @@ def coupled_steps(
     stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
     x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
     speed, toward, travelled, rested, over = state[4], state[5], state[6], state[7], state[8]
-    out[0], on_stem, outer, always = x, c[V_ON_STEM], c[V_OUTER], c[V_KEPT]
+    out[0], on_stem, outer, always, squared = x, c[V_ON_STEM], c[V_OUTER], c[V_KEPT], c[V_FADES_SQUARED] != 0.0
     last_h, (lags, drags, lates, stay) = -1.0, _lags(1.0, c)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
             last_h, (lags, drags, lates, stay) = h, _lags(h, c)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            fades = np.exp(-speed / fading) if stribeck > 0.0 or short > 0.0 else 0.0
+            fades = _faded(speed / fading, squared) if stribeck > 0.0 or short > 0.0 else 0.0
             wide = widening[f if varies else 0] + wear * travelled
             rubs, wide = always + on_stem * max(0.0, wide + outer), min(wide, -outer) if on_stem > 0.0 else wide
             more, softer = wide + stribeck * fades, 1.0

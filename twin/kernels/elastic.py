@@ -16,6 +16,9 @@ from twin.kernels.inputs import Bends, Plays, Tables
 from twin.slots import (
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
+    V_FADES_SQUARED,
+    V_GIVE_HIGH,
+    V_GIVE_LOW,
     V_PRESLIDING,
     V_RATE_CLOSE,
     V_RATE_OPEN,
@@ -105,11 +108,27 @@ def _stretched(moved: float, held: FloatArray, slips: FloatArray) -> float:
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _faded(quick: float, squared: bool) -> float:
+    """What is left of the friction that falls with the speed, of which `quick` is the share of its own."""
+    left: float = np.exp(-quick * (quick if squared else 1.0))
+    return left
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _given(pull: float, stops: tuple[float, float, float, float], gives: tuple[float, float]) -> float:
+    """What pulls the stem: beyond a stop that lets it land softly, a share of what else would."""
+    if pull < stops[2]:
+        return stops[2] + gives[0] * (pull - stops[2])
+    return pull if pull < stops[3] else stops[3] + gives[1] * (pull - stops[3])
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _held_step(
     x: float,
     h: float,
     between: tuple[float, float],
     stops: tuple[float, float, float, float],
+    gives: tuple[float, float],
     stays_s: tuple[float, float],
     lags_s: tuple[float, float],
     rates: tuple[float, float],
@@ -125,7 +144,7 @@ def _held_step(
     left = h
     for _ in range(slips.size + 1):
         pull = 0.5 * ((1.0 + friction) * between[0] + (1.0 - friction) * between[1])
-        target = max(stops[0], min(stops[1], pull))
+        target = max(stops[0], min(stops[1], _given(pull, stops, gives)))
         toward = 1.0 if target > x else -1.0
         stiff, nearest = _give(toward, held, slips)
         room = max(0.0, stops[3] - x if toward > 0.0 else x - stops[2])
@@ -164,6 +183,7 @@ def _freely(
     h: float,
     between: tuple[float, float],
     stops: tuple[float, float, float, float],
+    gives: tuple[float, float],
     stays: tuple[float, float],
     drags: tuple[float, float],
     rates: tuple[float, float],
@@ -175,13 +195,13 @@ def _freely(
     """
     closes = friction > 0.0
     pull = between[0] if closes else between[1]
-    target = max(stops[0], min(stops[1], pull))
+    target = max(stops[0], min(stops[1], _given(pull, stops, gives)))
     if abs(friction) < 1.0 - _SAME or (target < x if closes else target > x):
         return x, False
     if closes:
-        way = min((pull - x) * (1.0 - drags[0]), (stops[1] - x) * (1.0 - stays[0]))
+        way = min((pull - x) * (1.0 - drags[0]), (target - x) * (1.0 - stays[0]))
         return min(max(x, stops[3]), x + min(way, rates[0] * h)), True
-    way = max((pull - x) * (1.0 - drags[1]), (stops[0] - x) * (1.0 - stays[1]))
+    way = max((pull - x) * (1.0 - drags[1]), (target - x) * (1.0 - stays[1]))
     return max(min(x, stops[2]), x + max(way, -rates[1] * h)), True
 
 
@@ -205,6 +225,7 @@ def elastic_steps(
     place, ends = (0.0, (bends[0].size - 1) / c[V_TRAVEL]), (stops[0], stops[1], stops[2], stops[3])
     lags_s, rates = (c[V_TAU_CLOSE_S], c[V_TAU_OPEN_S]), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
     drags_s, slips = (lags_s[0] + c[V_DRAG_CLOSE_S], lags_s[1] + c[V_DRAG_OPEN_S]), stretches(c[V_PRESLIDING])
+    gives, squared = (c[V_GIVE_LOW], c[V_GIVE_HIGH]), c[V_FADES_SQUARED] != 0.0
     wear, stribeck, fading, (more_at, less_at, softer_at) = c[V_WEAR], c[V_STRIBECK], c[V_STRIBECK_SPEED], bends
     x, travelled, late, speed, friction = state[0], state[1], state[2], state[3], _stretched(0.0, held, slips)
     out[0], last_h, stays, drags, stay = x, -1.0, (0.0, 0.0), (0.0, 0.0), 1.0
@@ -214,13 +235,13 @@ def elastic_steps(
             last_h, stays, drags, stay = h, _decays(h, lags_s), _decays(h, drags_s), np.exp(-h / c[V_RELAX_TAU_S])
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             p = 0.5 * (force[f - 1] + force[f]) - c[V_RELAX] * (x - late)
-            slow = stribeck * np.exp(-speed / fading) if stribeck > 0.0 else 0.0
+            slow = stribeck * _faded(speed / fading, squared) if stribeck > 0.0 else 0.0
             wide = widening[f if varies else 0] + wear * travelled + slow
             below, above, softer = _bend(x, p, wide, place, more_at, less_at, softer_at)
             between = (softer * _curve_at(below, grid, closing), softer * _curve_at(above, grid, opening))
-            out[f], free = _freely(x, h, between, ends, stays, drags, rates, friction)
+            out[f], free = _freely(x, h, between, ends, gives, stays, drags, rates, friction)
             if not free:
-                out[f], friction = _held_step(x, h, between, ends, lags_s, drags_s, rates, held, slips, friction)
+                out[f], friction = _held_step(x, h, between, ends, gives, lags_s, drags_s, rates, held, slips, friction)
             travelled, speed = travelled + abs(out[f] - x), abs(out[f] - x) / h
             x, late = out[f], out[f] + (late - out[f]) * stay
     state[0], state[1], state[2], state[3] = x, travelled, late, speed
