@@ -59,6 +59,7 @@ def said(document: dict[str, Any]) -> str:
     return "; ".join(f"{note['what']}: {note['handled']}" for note in document["data_quality"])
 
 
+@pytest.mark.thorough
 def test_other_units_and_no_pressure(healthy: Recording, tmp_path: Path) -> None:
     columns = {"t": healthy.time_s * 1e3, "u": healthy.command * 6.894757, "x": healthy.position * 25.4}
     words = ["--map", "time=t,command=u,position=x", "--units", "time=ms,command=kPa,position=mm"]
@@ -88,6 +89,7 @@ def test_a_command_that_takes_effect_after_its_row(healthy: Recording, tmp_path:
     assert found["verdict"] == "no_gap"
 
 
+@pytest.mark.thorough
 def test_one_hertz_with_jitter(tmp_path: Path) -> None:
     steps = np.random.default_rng(3).uniform(0.6, 1.4, 400)
     time_s = np.cumsum(np.round(steps, 2))
@@ -97,6 +99,7 @@ def test_one_hertz_with_jitter(tmp_path: Path) -> None:
     assert "uneven sampling" in said(found)
 
 
+@pytest.mark.thorough
 def test_a_plain_gain_and_lag_in_percent_without_a_design(tmp_path: Path) -> None:
     time_s = np.arange(0.0, 300.0, 0.5)
     command = random_steps(300.0, 0.5, low=0.0, high=100.0)
@@ -108,6 +111,7 @@ def test_a_plain_gain_and_lag_in_percent_without_a_design(tmp_path: Path) -> Non
     assert "identified from the record" in said(found)
 
 
+@pytest.mark.thorough
 def test_a_misleading_design_is_said_to_be_off(healthy: Recording, tmp_path: Path) -> None:
     model = tmp_path / "wrong.toml"
     model.write_text(
@@ -121,6 +125,7 @@ def test_a_misleading_design_is_said_to_be_off(healthy: Recording, tmp_path: Pat
     assert sizes == pytest.approx({"deadband": 2.96, "offset": 7.3}, rel=0.01)
 
 
+@pytest.mark.thorough
 def test_several_records_count_together(tmp_path: Path) -> None:
     time_s, command = np.arange(0.0, 120.0, 0.2), random_steps(120.0, 0.2)
     files = [
@@ -191,6 +196,7 @@ def test_the_hint_for_an_inverted_axis_works(healthy: Recording, tmp_path: Path)
     assert found["verdict"] == "no_gap"
 
 
+@pytest.mark.thorough
 def test_a_constant_pressure_is_no_measurement(healthy: Recording, tmp_path: Path) -> None:
     columns = columns_of(replace(healthy, pressure=np.full(healthy.n, 7.5)))
     found = diagnosed(tmp_path / "d", write(tmp_path / "x.csv", columns))

@@ -57,6 +57,7 @@ def test_a_true_cause_carries_over_to_commands_that_no_fit_has_met(creeping: Sta
     assert found.reducible_closed is not None and found.reducible_closed.value > 0.95
 
 
+@pytest.mark.thorough
 def test_a_floor_with_motion_in_it_is_as_doubtful_here_as_elsewhere(creeping: StageResult) -> None:
     def width(source: str) -> float:
         noise = creeping.case.noise

@@ -35,12 +35,14 @@ def slow() -> Recording:
     return a_record(plant_of(worn(0.5)))
 
 
+@pytest.mark.thorough
 def test_what_the_design_has_and_the_valve_too_is_no_gap(slow: Recording) -> None:
     result, judgement = judged(slow, worn(0.5))
     assert judgement.verdict == "no_gap"
     assert result.plant() == plant_of(worn(0.5))
 
 
+@pytest.mark.thorough
 def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
     result, judgement = judged(slow, worn(0.2))
     assert [c.name for c in judgement.causes][:1] == ["sensor_lag"]
@@ -48,6 +50,7 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
     assert sensor.values[0] == pytest.approx(0.5, abs=0.02)
 
 
+@pytest.mark.thorough
 def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
     found = attributed(result.case, result, ["sensor_lag"], 1)

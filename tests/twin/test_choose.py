@@ -22,9 +22,17 @@ from twin.explain import typical_values
 from twin.fit.least_squares import descend, minimise
 from twin.plant import Inserted, Plant
 
+#: One of each stage that is tried each time; the others take seconds each.
+QUICK = ("ep_calibration", "creep", "lvdt_calibration")
+
 
 @pytest.mark.parametrize(
-    "effect", [e for e in effects().values() if e.evidence == "trajectory"], ids=lambda e: str(e.name)
+    "effect",
+    [
+        pytest.param(e, id=e.name, marks=() if e.name in QUICK else pytest.mark.thorough)
+        for e in effects().values()
+        if e.evidence == "trajectory"
+    ],
 )
 def test_a_large_effect_is_named(effect: Effect) -> None:
     form = effect.forms[0]
@@ -41,6 +49,7 @@ def test_nothing_is_named_where_nothing_is_wrong() -> None:
     assert judgement.causes == ()
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("number", "design"),
     [
@@ -66,6 +75,7 @@ def test_something_outside_the_vocabulary_is_unexplained() -> None:
     assert judgement.causes == ()
 
 
+@pytest.mark.thorough
 def test_probabilities_stay_within_their_ceiling_and_twins_below_theirs() -> None:
     effect = effects()["sensor_lag"]
     plant = Plant(DesignModel(), (Inserted(effect.name, effect.forms[0], tuple(typical_values(effect.forms[0]))),))

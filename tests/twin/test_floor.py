@@ -47,6 +47,7 @@ def two_causes() -> tuple[StageResult, Judgement]:
     return judged(a_record(Plant(design, (inserted("creep", "one_tail", 0.05, 30.0),))))
 
 
+@pytest.mark.thorough
 def test_the_true_model_leaves_no_more_than_half_again_of_what_the_likeliest_leaves() -> None:
     findings = two_causes()[0].decisions[1].findings
     least = findings.scored()[0][1].mse

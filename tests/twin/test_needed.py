@@ -83,6 +83,7 @@ def position() -> tuple[StageResult, Decision]:
     return result, decision
 
 
+@pytest.mark.thorough
 def test_a_sure_cause_is_kept_and_one_with_many_rivals_is_left_out(position: tuple[StageResult, Decision]) -> None:
     _, decision = position
     rules, weights = DecisionRules(), Weights()
@@ -120,6 +121,7 @@ def test_a_cause_behind_the_pressure_that_unseen_data_do_not_need(position: tupl
     assert idle_cause(parts, alone, result, 1.0) is None
 
 
+@pytest.mark.thorough
 def test_a_number_that_adds_less_than_any_further_cause_would_have_to_is_left_out() -> None:
     result, _ = judged(a_record(Plant(DesignModel(rate_limit=0.1))))
     findings, rules = result.decisions[-1].findings, DecisionRules()

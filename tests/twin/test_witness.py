@@ -81,6 +81,7 @@ def test_a_slow_noise_that_the_stem_denies_raises_no_floor(where: dict[str, floa
     assert gauge_wanders(read, modelled, believing) is gauge
 
 
+@pytest.mark.thorough
 def test_a_search_asks_the_stem_about_all_of_the_reading() -> None:
     case = make_case([straying(gauge_psi=0.006, rows=1.5)], DESIGN)
     result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
@@ -133,6 +134,7 @@ def test_the_stem_denies_nothing_where_something_is_wrong_behind_the_pressure() 
     assert gauge_lies(100.0, 0.99 * SLIGHT)
 
 
+@pytest.mark.thorough
 def test_a_late_gauge_is_judged_by_the_stem() -> None:
     case = make_case([late(gauge=True)], DESIGN)
     result = judge(case, SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
