@@ -22,7 +22,7 @@ from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
 from twin.in_steps import in_steps
 from twin.plant import Plant
-from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position
+from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position, still_denied
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25
@@ -86,7 +86,20 @@ def judge(
     channel = in_steps(case, position_channel(heard.trials, case.sigma_y))
     floor = 1.0 if heard.astray else 1.0 + pressure_doubt(case, channel, heard.decision)
     second = _judge(case, channel, search, rules, progress, watch, floor)
+    if not heard.astray:
+        modelled = driven_by_model(_believed(first), case.trials)
+        if still_denied(case, modelled, _likely(second)):
+            heard = replace(heard, trials=modelled, astray=True)
+            channel = in_steps(case, position_channel(modelled, case.sigma_y))
+            second = _judge(case, channel, search, rules, progress, watch)
     return StageResult(case, (heard.decision, second), heard.trials, heard.astray, heard.denied)
+
+
+def _likely(decision: Decision) -> Fit:
+    """What was accepted, or the likeliest single cause."""
+    findings = decision.findings
+    single = findings.best_of_size(1)
+    return single if decision.accepted is findings.none and single is not None else decision.accepted
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,7 +14,7 @@ from logs.recording import DataNote
 from twin.case import Case
 from twin.choose.trim import SLIGHT
 from twin.fit.channel import position_channel, pressure_fine
-from twin.fit.fitting import fit
+from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.fit.trial import Trial
 from twin.in_steps import in_steps
@@ -50,6 +50,19 @@ def gauge_lies(found: float, designed: float) -> bool:
     the pressure may by chance make up for a part of what is wrong before it.
     """
     return designed <= SLIGHT and _denies(designed, found)
+
+
+def still_denied(case: Case, trials: Sequence[Trial], found: Fit) -> bool:
+    """Whether the stem denies what was read once the likeliest cause behind the pressure is `found`.
+
+    `trials`: driven by the model. A stem that sticks and slips goes by the first touch of its edges: noise that hardly
+    stands out takes it elsewhere, and without its cause either pressure leaves as much.
+    """
+    if found.mse <= SLIGHT:
+        return False
+    channel = in_steps(case, position_channel(trials, case.sigma_y))
+    again = fit(channel, found.space, starts_of(found.space, [found], channel.recordings), refine=2)
+    return _denies(again.mse, found.mse)
 
 
 def _denies(followed: float, other: float) -> bool:

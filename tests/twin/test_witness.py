@@ -7,11 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
-from scipy.ndimage import gaussian_filter1d
 
 from control.design import DesignModel
-from logs.recording import FloatArray, Recording
+from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
+from tests.twin.straying import read, slow, straying
 from twin.case import Case, make_case
 from twin.catalog import effect
 from twin.choose.decide import Decision, DecisionRules, decide
@@ -32,31 +32,8 @@ from twin.verdict import strays
 from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position
 
 DESIGN = DesignModel()
-GAUGE_PSI, READING_IN = 0.03, 1.5e-4
+GAUGE_PSI = 0.03
 PLAY = Inserted("ep_deadband", effect("ep_deadband").form("play"), (0.018,))
-
-
-def slow(n: int, seed: int, rows: float = 12.0) -> FloatArray:
-    """Unrest of unit deviation, made of bells of so many rows: within some five seconds unless told otherwise."""
-    wave = gaussian_filter1d(np.random.default_rng(seed).normal(0.0, 1.0, n), rows)
-    return np.asarray(wave / wave.std())
-
-
-def read(record: Recording, gauge_psi: float) -> Recording:
-    """What a valve reads whose pressure gauge is so noisy; `record` is without noise."""
-    dice = np.random.default_rng(4)
-    assert record.pressure is not None
-    pressure = record.pressure + dice.normal(0.0, gauge_psi, record.n)
-    return replace(record, pressure=pressure, position=record.position + dice.normal(0.0, READING_IN, record.n))
-
-
-def straying(gauge_psi: float = 0.0, air_psi: float = 0.0, rows: float = 12.0) -> Recording:
-    """A healthy valve whose pressure gauge strays slowly, or whose pressure really does."""
-    healthy = a_record(Plant(DESIGN))
-    command = healthy.command + air_psi * slow(healthy.n, 7, rows)
-    pressure, position = simulate_recording(Plant(DESIGN), replace(healthy, command=command))
-    strays = pressure + gauge_psi * slow(healthy.n, 7, rows)
-    return replace(read(replace(healthy, pressure=strays, position=position), 0.004), command=healthy.command)
 
 
 def left_of(case: Case) -> tuple[float, float, float]:
