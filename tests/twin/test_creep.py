@@ -37,3 +37,20 @@ def test_a_pull_that_creeps_moves_no_faster_than_the_stem_can() -> None:
     speeds = np.diff(reading(slow, ("creep", "pull_tail", (0.3, 15.0)))) / 0.1
     assert np.abs(speeds).max() == pytest.approx(0.03, rel=1e-3)
     assert np.abs(np.diff(reading(slow, ("creep", "one_tail", (0.3, 15.0)))) / 0.1).max() < 0.028
+
+
+@pytest.mark.parametrize(
+    ("apart", "long", "like"), [(6.0, 0.5, ("pull_tails", (0.2, 12.0))), (9.0, 0.0, ("pull_tail", (0.2, 12.0)))]
+)
+def test_two_tails_may_be_any_two(apart: float, long: float, like: tuple[str, tuple[float, ...]]) -> None:
+    """Half each and six times as long, or only the one, are two of them."""
+    free = reading(DESIGN, ("creep", "pull_tails_apart", (0.2, 12.0, apart, long)))
+    np.testing.assert_allclose(free, reading(DESIGN, ("creep", *like)), atol=1e-12)
+
+
+def test_the_longer_tail_is_still_on_its_way_when_the_shorter_is_over() -> None:
+    at = 300 * 2 - 1
+    short, both = (reading(DESIGN, ("creep", "pull_tails_apart", (0.2, 3.0, 40.0, long)))[at] for long in (0.0, 1.0))
+    between = reading(DESIGN, ("creep", "pull_tails_apart", (0.2, 3.0, 40.0, 0.5)))[at]
+    assert both < short - 0.01
+    assert between == pytest.approx(0.5 * (both + short), abs=1e-9)

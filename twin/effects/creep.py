@@ -32,6 +32,30 @@ _SHARE = Parameter(
     doc="share of the motion that comes late",
 )
 
+_APART = Parameter(
+    name="apart",
+    kind="fraction",
+    lower=1.0,
+    upper=60.0,
+    starts=(6.0, 15.0),
+    scale=10.0,
+    doc="the longer time constant over the shorter",
+    neutral=RATIO,
+    size=False,
+)
+
+_LONG = Parameter(
+    name="long",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.5,),
+    scale=0.3,
+    doc="part of the share that goes with the longer",
+    neutral=0.5,
+    size=False,
+)
+
 _BEGUN = Parameter(
     name="begun",
     kind="fraction",
@@ -80,6 +104,13 @@ def _pull_twice(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_TARGET_CREEPS] = 1.0
 
 
+def _pull_apart(c: Coefficients, values: Sequence[float]) -> None:
+    share, tail_s, apart, long = values
+    c.valve[[V_CREEP1, V_CREEP2]] = share * (1.0 - long), share * long
+    c.valve[[V_CREEP1_TAU_S, V_CREEP2_TAU_S]] = tail_s, apart * tail_s
+    c.valve[V_TARGET_CREEPS] = 1.0
+
+
 def _stretch(c: Coefficients, values: Sequence[float]) -> None:
     _one_tail(c, values)
     c.valve[V_STRETCHES], c.valve[V_STRETCHED] = 1.0, values[2]
@@ -106,9 +137,9 @@ EFFECT = Effect(
     stage="actuator",
     claim="A slow tail follows the fast response.",
     equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
-    "6 tail; pull: the same on the target of the stem, before its lag and rate limit (on the stem where the two act on "
-    "each other); force: the same on the pressure before the play; "
-    "stretch: reading = x + share z up to the stops, z as above and begun x at the start; "
+    "6 tail; tails apart: long of it with apart times the tail; pull: the same on the target of the stem, before its "
+    "lag and rate limit (on the stem where the two act on each other); force: the same on the pressure before the "
+    "play; stretch: reading = x + share z up to the stops, z as above and begun x at the start; "
     "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail",
     source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
     forms=(
@@ -116,6 +147,11 @@ EFFECT = Effect(
         Form("two_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _two_tails),
         Form("pull_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the pull")), _pull),
         Form("pull_tails", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two time constants")), _pull_twice),
+        Form(
+            "pull_tails_apart",
+            (_SHARE, _tail(2.0, (4.0, 10.0), "the shorter of the two time constants"), _APART, _LONG),
+            _pull_apart,
+        ),
         Form("stretch", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which it gives way"), _BEGUN), _stretch),
         Form("stretch_twice", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two"), _BEGUN), _stretch_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
