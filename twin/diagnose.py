@@ -21,6 +21,7 @@ from twin.choose.weigh import Weights
 from twin.closed_loop import closed_loop
 from twin.diagnosis import Diagnosis
 from twin.effect import Scales
+from twin.far_readings import heavy_tail
 from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, explained_to_noise, retuning_pays, shown_by_pressure, upheld
@@ -216,7 +217,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     late, late_notes = late_commands(look_at(known.case)[0])
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
-    known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing)]
+    known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing), *heavy_tail(sensing)]
     return case, look, sensing, tuple(late)
 
 

@@ -19,3 +19,22 @@ def lag_parameter(doc: str, usual: tuple[float, float]) -> tuple[Parameter]:
             usual=usual,
         ),
     )
+
+
+#: Damping ratio of what is of second order: a mass on its spring, or a filter of two poles.
+DAMPING = Parameter(
+    name="damping",
+    kind="fraction",
+    lower=0.2,
+    upper=0.98,
+    starts=(0.7,),
+    scale=0.3,
+    doc="damping ratio",
+    neutral=0.7,
+    size=False,
+)
+
+
+def natural_s(lag_s: float, damping: float) -> float:
+    """1 / natural frequency [s] of what is of second order and in the mean so late."""
+    return 0.5 * lag_s / damping

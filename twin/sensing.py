@@ -19,6 +19,7 @@ from twin.effect import Scales
 from twin.events.dropouts import SIGMAS
 from twin.events.evidence import Evidence
 from twin.events.scan import ON_CHANGE, Events, scan_events
+from twin.events.tails import together
 from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted, Plant
@@ -107,7 +108,8 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     drop = _strongest(events, "sensor_dropouts")
     often = false >= 3 and false / rows > _LEAST_RATE
     enough = (drop.found and often) or _loud(recordings, events, noise)
-    if enough and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
+    apart = enough and not together([e.tail for e in events]).heavy
+    if apart and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
         accepted["sensor_dropouts"] = dict(drop.estimates)
     band = _band(events, max(_LEAST_STEP * travel, 2.0 * noise.position.sigma))
     if band > 0.0:

@@ -153,7 +153,13 @@ S_ROOT_SINCE_S = S_ROOT + 1  # and how much of that time has been [s]
 S_PICKS = S_ROOT_SINCE_S + 1  # what the reading picks up of the pressure [position/pressure]
 S_PICKS_FROM = S_PICKS + 1  # and the pressure at which that is nothing [pressure]
 S_LEADS_S = S_PICKS_FROM + 1  # what the reading picks up of the speed of the stem [s]
-S_COUNT = S_LEADS_S + 1
+S_LAG3_S = S_LEADS_S + 1  # a third lag of the sensor [s]
+S_THRICE_S = S_LAG3_S + 1  # a lag of the stem that the sensor sits on, three times over [s]
+S_NATURAL_S = S_THRICE_S + 1  # of a filter of second order: 1 / natural frequency [s]; 0: none
+S_DAMPING = S_NATURAL_S + 1  # and its damping ratio, below 1
+S_MASS_NATURAL_S = S_DAMPING + 1  # the same of a mass on a spring between the stem and the sensor
+S_MASS_DAMPING = S_MASS_NATURAL_S + 1
+S_COUNT = S_MASS_DAMPING + 1
 
 FOREVER = 1e30
 

@@ -146,7 +146,7 @@ def test_a_third_cause_is_not_looked_for_when_two_leave_most() -> None:
 @pytest.mark.thorough
 def test_a_third_cause_is_not_looked_for_where_it_would_not_be_accepted() -> None:
     assert SearchRules().scant == DecisionRules().share
-    lag = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.9,))
+    lag = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.9,))
     bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.02,))
     trial, _ = trial_of(Plant(DESIGN, (lag, bow)), staircase()[:2000])
     slow = 1e-3 * np.sin(np.arange(trial.recording.n) / 90.0)

@@ -12,12 +12,13 @@ from logs.recording import Recording
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.catalog import effect
 from twin.events.scan import Events
+from twin.events.tails import Tail
 from twin.plant import Inserted, Plant
 from twin.rounding import rounding_down
 from twin.sensing import Sensing
 
 STEP_IN = 0.0021
-LATE = Inserted("additional_lag", effect("additional_lag").forms[-1], (0.3,))
+LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.3,))
 LOPSIDED = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (-0.2,))
 
 
@@ -27,7 +28,7 @@ def coarse(*inserted: Inserted, down: bool, design: DesignModel = DESIGN) -> tup
     steps = trial.recording.position / STEP_IN
     position = STEP_IN * (np.floor(steps) if down else np.round(steps))
     none = np.zeros(position.size, dtype=bool)
-    seen = Sensing((Events({}, none, none),), {"sensor_quantization": {}}, STEP_IN)
+    seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), {"sensor_quantization": {}}, STEP_IN)
     return replace(trial.recording, position=position), seen
 
 
@@ -58,7 +59,7 @@ def test_rests_that_all_round_the_same_way_are_no_rounding_down() -> None:
     trial, _ = trial_of(Plant(DESIGN), np.repeat([6.0, 8.8, 8.95, 9.3, 9.6, 9.3, 9.9, 6.3], 300))
     position = step_in * np.round(trial.recording.position / step_in)
     none = np.zeros(position.size, dtype=bool)
-    seen = Sensing((Events({}, none, none),), {"sensor_quantization": {}}, step_in)
+    seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), {"sensor_quantization": {}}, step_in)
     assert rounding_down([replace(trial.recording, position=position)], Plant(DESIGN), seen) == ()
 
 
@@ -69,7 +70,7 @@ def test_rests_off_the_stops_that_all_round_up_are_no_rounding_up() -> None:
     trial, _ = trial_of(Plant(DESIGN), np.repeat(DESIGN.a1 + places / DESIGN.compliance, 400))
     part = trial.recording.slice(150, trial.recording.n)
     none = np.zeros(part.n, dtype=bool)
-    seen = Sensing((Events({}, none, none),), {"sensor_quantization": {}}, step_in)
+    seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), {"sensor_quantization": {}}, step_in)
     coarse = replace(part, position=step_in * np.round(part.position / step_in))
     assert rounding_down([coarse], Plant(DESIGN), seen) == ()
 

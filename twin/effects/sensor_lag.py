@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.lags import lag_parameter
-from twin.slots import S_LAG2_S, S_LAG_S, S_LEADS_S, S_WINDOW_S, S_WINDOWS
+from twin.lags import DAMPING, lag_parameter, natural_s
+from twin.slots import S_DAMPING, S_LAG2_S, S_LAG3_S, S_LAG_S, S_LEADS_S, S_NATURAL_S, S_WINDOW_S, S_WINDOWS
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -16,6 +16,16 @@ def _apply(c: Coefficients, values: Sequence[float]) -> None:
 def _twice(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_LAG_S] = 0.5 * values[0]
     c.sensor[S_LAG2_S] += 0.5 * values[0]
+
+
+def _thrice(c: Coefficients, values: Sequence[float]) -> None:
+    third = values[0] / 3.0
+    c.sensor[S_LAG_S] = c.sensor[S_LAG3_S] = third
+    c.sensor[S_LAG2_S] += third
+
+
+def _second_order(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_NATURAL_S, S_DAMPING]] = natural_s(*values), values[1]
 
 
 def _mean(c: Coefficients, values: Sequence[float]) -> None:
@@ -49,6 +59,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The reading is low-pass filtered.",
     equations="dy/dt = (x - y) / lag; two_poles: half the lag, twice over, one behind the other; "
+    "three_poles: a third, three times over; second_order: T^2 d2y/dt2 + 2 damping T dy/dt = x - y, lag = 2 damping T; "
     "running_mean: the mean over the last 2 lag; running_mean_twice: over the last lag, and that once more; a reading "
     "that leads is no lag, only told from what it resembles: y = x + lead dx/dt",
     source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments; "
@@ -56,11 +67,13 @@ EFFECT = Effect(
     forms=(
         Form("first_order", _lag("time constant of the filter"), _apply),
         Form("two_poles", _lag("time constants of the two equal poles together"), _twice),
+        Form("three_poles", _lag("time constants of the three equal poles together"), _thrice),
+        Form("second_order", (*_lag("mean delay of the reading"), DAMPING), _second_order),
         Form("running_mean", _lag("mean delay of the reading, half the window that it is averaged over"), _mean),
         Form("running_mean_twice", _lag("mean delay of the reading, the window that it is averaged over"), _mean_twice),
         Form("leads", (_LEAD,), _leads, outside="the reading picks up the speed of the stem"),
     ),
     twins=("additional_lag", "dead_time"),
     absorbs=("tau",),
-    same_as={"first_order": ("additional_lag",), "two_poles": ("additional_lag",)},
+    same_as=dict.fromkeys(("first_order", "two_poles", "three_poles", "second_order"), ("additional_lag",)),
 )

@@ -16,6 +16,7 @@ from scipy.stats import beta
 from logs.recording import FloatArray
 from twin.diagnosis import Estimate
 from twin.events.evidence import Evidence, nothing
+from twin.events.tails import NEAR, Tail
 from twin.noise.model import poisson_tail
 
 BoolArray = npt.NDArray[np.bool_]
@@ -34,6 +35,7 @@ class Dropouts:
 
     rows: BoolArray
     evidence: Evidence
+    tail: Tail
     codes: tuple[float, ...] = ()
 
 
@@ -45,7 +47,7 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     known = np.isfinite(reading)
     rows = np.zeros(reading.size, dtype=bool)
     if known.sum() < 3 * _WINDOW:
-        return Dropouts(rows, nothing(effect, "fewer than 27 readings"))
+        return Dropouts(rows, nothing(effect, "fewer than 27 readings"), Tail(0, np.empty(0)))
     y = reading[known]
     # mirrored at the ends: a false first reading would otherwise be most of its own neighbours
     apart = y - median_filter(y, _WINDOW, mode="mirror")
@@ -53,13 +55,15 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     bound = SIGMAS * sigma
     steps = np.abs(np.diff(y, prepend=y[:1]))
     # false readings in a motion move the median of their neighbours by a step or two, which are not far for that
-    far = np.abs(apart) > bound + 2.0 * median_filter(steps, 2 * _WINDOW + 1, mode="mirror")
-    false = _isolated(y, far, bound)
+    reach = bound + 2.0 * median_filter(steps, 2 * _WINDOW + 1, mode="mirror")
+    false = _isolated(y, np.abs(apart) > reach, bound)
+    near = false | _isolated(y, np.abs(apart) > NEAR * reach, bound, NEAR)
     rows[known] = false
-    count = int(false.sum())
+    count, sizes = int(false.sum()), np.abs(apart[false])
+    tail = Tail(int(near.sum()), np.maximum(sizes / reach[false], 1.0))
     if count == 0:
-        return Dropouts(rows, Evidence(effect, 0.0, 1.0, {"rate": Estimate(0.0, (0.0, 3.0 / y.size), "1/sample")}))
-    sizes = np.abs(apart[false])
+        none = {"rate": Estimate(0.0, (0.0, 3.0 / y.size), "1/sample")}
+        return Dropouts(rows, Evidence(effect, 0.0, 1.0, none), tail)
     spread = max(float(np.ptp(y)), bound)
     # each false reading: somewhere in the range, instead of that far out on a Gaussian
     gains = np.minimum(0.5 * (sizes / sigma) ** 2, 50.0) - log(spread / sigma) + log(count / y.size)
@@ -69,11 +73,12 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
         "size": Estimate(float(np.median(sizes)), (float(sizes.min()), float(sizes.max())), ""),
     }
     p_value = poisson_tail(count, _FALSE_RATE * y.size)
-    return Dropouts(rows, Evidence(effect, ratio, p_value, estimates), _codes(y[false]))
+    return Dropouts(rows, Evidence(effect, ratio, p_value, estimates), tail, _codes(y[false]))
 
 
-def _isolated(y: FloatArray, far: BoolArray, bound: float) -> BoolArray:
-    """Runs of at most three far samples that jump away from the one neighbour and back to the other.
+def _isolated(y: FloatArray, far: BoolArray, bound: float, share: float = 1.0) -> BoolArray:
+    """Runs of at most three far samples that jump away from the one neighbour and back to the other, by `share` of what
+    is asked of false readings.
 
     The tip of a motion is far from a median too, but is reached and left by steps like those around it: a false
     reading is reached and left by jumps much larger than the motion there.
@@ -89,7 +94,7 @@ def _isolated(y: FloatArray, far: BoolArray, bound: float) -> BoolArray:
     usual = np.where(starts == 0, steps[2 : _WINDOW + 2].max(), usual)
     usual = np.where(stops == y.size, steps[-_WINDOW - 1 : -1].max(), usual)
     single = (stops - starts == 1) | ((starts > 0) & (stops < y.size))
-    jump = np.minimum(np.abs(away), np.abs(back))
+    jump = np.minimum(np.abs(away), np.abs(back)) / share
     good = (stops - starts <= _LONGEST) & (away * back > 0.0) & (jump > np.maximum(bound, _JUMP * usual)) & single
     good &= np.abs(after - before) < np.maximum(0.5 * jump, bound)
     marked = np.zeros(y.size, dtype=bool)

@@ -15,6 +15,7 @@ from twin.events.evidence import Evidence, nothing
 from twin.events.on_change import on_change
 from twin.events.stale import stale_samples
 from twin.events.stickslip import stick_slip
+from twin.events.tails import Tail
 from twin.noise.lattice import lattice_step, missing_codes, rounding_error, step_doubt
 from twin.noise.model import NoiseModel
 
@@ -28,11 +29,13 @@ class Events:
 
     `quantization_share` is the part of the position floor's variance that the reading's step makes: every reading has
     a step, and only one that makes a good part of the floor is the effect `sensor_quantization`.
+    `tail`: of the position.
     """
 
     evidence: dict[str, Evidence]
     false_position: npt.NDArray[np.bool_]
     false_pressure: npt.NDArray[np.bool_]
+    tail: Tail
     quantization_share: float = 0.0
 
 
@@ -63,7 +66,7 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
         )
         memory = noise.pressure.correlation_samples
         evidence["dead_time"] = delay(recording.time_s, recording.command, true_pressure, noise.pressure.sigma, memory)
-    return Events(evidence, drop.rows, false_pressure, share)
+    return Events(evidence, drop.rows, false_pressure, drop.tail, share)
 
 
 def _coarse(position: FloatArray, step: float | None) -> float:

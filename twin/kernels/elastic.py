@@ -115,11 +115,12 @@ def _faded(quick: float, squared: bool) -> float:
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _given(pull: float, stops: tuple[float, float, float, float], gives: tuple[float, float]) -> float:
-    """What pulls the stem: beyond a stop that lets it land softly, a share of what else would."""
-    if pull < stops[2]:
-        return stops[2] + gives[0] * (pull - stops[2])
-    return pull if pull < stops[3] else stops[3] + gives[1] * (pull - stops[3])
+def _ends(pull: float, stops: tuple[float, float, float, float], gives: tuple[float, float]) -> tuple[float, float]:
+    """Within what a stem can be pulled: beyond a stop that it lands on softly, by a share of what else would."""
+    softly = pull < stops[2] and gives[0] < 1.0, pull > stops[3] and gives[1] < 1.0
+    low = max(stops[0], stops[2] + gives[0] * (pull - stops[2])) if softly[0] else stops[0]
+    high = min(stops[1], stops[3] + gives[1] * (pull - stops[3])) if softly[1] else stops[1]
+    return low, high
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -144,7 +145,8 @@ def _held_step(
     left = h
     for _ in range(slips.size + 1):
         pull = 0.5 * ((1.0 + friction) * between[0] + (1.0 - friction) * between[1])
-        target = max(stops[0], min(stops[1], _given(pull, stops, gives)))
+        low, high = _ends(pull, stops, gives)
+        target = max(low, min(high, pull))
         toward = 1.0 if target > x else -1.0
         stiff, nearest = _give(toward, held, slips)
         room = max(0.0, stops[3] - x if toward > 0.0 else x - stops[2])
@@ -195,13 +197,14 @@ def _freely(
     """
     closes = friction > 0.0
     pull = between[0] if closes else between[1]
-    target = max(stops[0], min(stops[1], _given(pull, stops, gives)))
+    low, high = _ends(pull, stops, gives)
+    target = max(low, min(high, pull))
     if abs(friction) < 1.0 - _SAME or (target < x if closes else target > x):
         return x, False
     if closes:
-        way = min((pull - x) * (1.0 - drags[0]), (target - x) * (1.0 - stays[0]))
+        way = min((pull - x) * (1.0 - drags[0]), (high - x) * (1.0 - stays[0]))
         return min(max(x, stops[3]), x + min(way, rates[0] * h)), True
-    way = max((pull - x) * (1.0 - drags[1]), (target - x) * (1.0 - stays[1]))
+    way = max((pull - x) * (1.0 - drags[1]), (low - x) * (1.0 - stays[1]))
     return max(min(x, stops[2]), x + max(way, -rates[1] * h)), True
 
 

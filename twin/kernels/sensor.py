@@ -14,6 +14,7 @@ from logs.recording import FloatArray
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.mean import running_mean
 from twin.kernels.play import plain_play
+from twin.kernels.second_order import swinging
 from twin.slots import (
     KNOTS,
     S_AT_OPEN,
@@ -22,6 +23,7 @@ from twin.slots import (
     S_CYCLE_COS,
     S_CYCLE_S,
     S_CYCLE_SIN,
+    S_DAMPING,
     S_DRIFT_AMP,
     S_DRIFT_RATE,
     S_DRIFT_TAU_S,
@@ -33,9 +35,13 @@ from twin.slots import (
     S_JUMP_S,
     S_KNOTS,
     S_LAG2_S,
+    S_LAG3_S,
     S_LAG_S,
     S_LEADS_S,
     S_LEAVES,
+    S_MASS_DAMPING,
+    S_MASS_NATURAL_S,
+    S_NATURAL_S,
     S_OTHER,
     S_PLAY,
     S_ROOT,
@@ -43,6 +49,7 @@ from twin.slots import (
     S_STEP,
     S_SWING,
     S_TABLE,
+    S_THRICE_S,
     S_TRAVEL,
     S_WANDER_S,
     S_WINDOW_S,
@@ -53,6 +60,8 @@ from twin.slots import (
 
 #: The pieces of a natural cubic spline are linear in its knots: (4, pieces, knots), for knots 1 apart.
 _CARDINAL = CubicSpline(np.arange(KNOTS + 1.0), np.eye(KNOTS + 1), bc_type="natural").c
+#: What makes a reading depend on more than where the stem is.
+_FILTERS = [S_LAG_S, S_LAG2_S, S_LAG3_S, S_THRICE_S, S_NATURAL_S, S_MASS_NATURAL_S, S_WINDOW_S]
 _TABLE = slice(S_TABLE, S_TABLE + TABLE)
 
 
@@ -71,10 +80,13 @@ def sensor_kernel(
     if c[S_PLAY] > 0.0:
         core = np.empty_like(stem)
         plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
-    if max(c[S_LAG_S], c[S_LAG2_S], c[S_WINDOW_S]) > 0.0:
+    if filters(c):
         t = elapsed_s(time_s, offsets)
-        late = lagged(time_s, offsets, static_reading(core, t, c), c[S_LAG_S])
-        late = lagged(time_s, offsets, late, c[S_LAG2_S])
+        late = static_reading(core, t, c)
+        for lag_s in lags_s(c):
+            late = lagged(time_s, offsets, late, lag_s)
+        for natural_s, damping in swings(c):
+            late = swinging(time_s, offsets, late, natural_s, damping)
         for _ in range(int(c[S_WINDOWS])):
             late = running_mean(t, late, c[S_WINDOW_S])
         out[:] = late[offsets] if taken_s is None else np.interp(taken_s, t, late)
@@ -86,6 +98,21 @@ def sensor_kernel(
         _refresh(time_s, c, out)
     if c[S_STEP] > 0.0:
         out[:] = np.round(out / c[S_STEP]) * c[S_STEP]
+
+
+def filters(c: FloatArray) -> bool:
+    """Whether the reading depends on more than where the stem is."""
+    return bool(c[_FILTERS].any())
+
+
+def lags_s(c: FloatArray) -> list[float]:
+    """The lags between stem and reading, one behind the other [s]; 0: none."""
+    return [*c[[S_LAG_S, S_LAG2_S, S_LAG3_S]], *[c[S_THRICE_S]] * 3]
+
+
+def swings(c: FloatArray) -> list[tuple[float, float]]:
+    """Those of second order: 1 / natural frequency [s], 0 without, and damping ratio."""
+    return [(c[S_NATURAL_S], c[S_DAMPING]), (c[S_MASS_NATURAL_S], c[S_MASS_DAMPING])]
 
 
 def leading(t: FloatArray, stem: FloatArray, lead_s: float) -> FloatArray:

@@ -9,10 +9,11 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.play import plain_play
-from twin.kernels.sensor import leading, static_reading
+from twin.kernels.sensor import filters, lags_s, leading, static_reading, swings
 from twin.live.lag import Lag
 from twin.live.mean import Mean
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LAG2_S, S_LAG_S, S_LEADS_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
+from twin.live.swing import Swing
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LEADS_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
 
 
 class Sensor:
@@ -26,7 +27,8 @@ class Sensor:
         self._origin_s = origin_s
         half = 0.5 * float(c[S_PLAY])
         self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
-        self._lag, self._further = Lag(float(c[S_LAG_S])), Lag(float(c[S_LAG2_S]))
+        lags, filters_of_two = [Lag(float(one)) for one in lags_s(c)], [Swing(*map(float, one)) for one in swings(c)]
+        self._filters: list[Lag | Swing] = [*lags, *filters_of_two]
         self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
         self._rows: deque[tuple[float, float]] = deque(
             [(0.0, float(self._static(np.array([self._core]), np.zeros(1))[0]))]
@@ -48,9 +50,10 @@ class Sensor:
             plain_play(stem, 0.5 * c[S_PLAY], self._core, core)
             self._core = float(core[-1])
             stem = core
-        if max(c[S_LAG_S], c[S_LAG2_S], c[S_WINDOW_S]) > 0.0:
-            late = self._lag.follow(time_s, offsets, self._static(stem, t))
-            late = self._further.follow(time_s, offsets, late)
+        if filters(c):
+            late = self._static(stem, t)
+            for one in self._filters:
+                late = one.follow(time_s, offsets, late)
             for mean in self._means:
                 late = mean.follow(t, late)
             value = float(late[-1])
