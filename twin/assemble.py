@@ -9,7 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from logs.recording import DataNote
 from twin.case import Case
 from twin.catalog import effects
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.closure import floor_doubt, gap, rms
 from twin.detectable import detection_limits, unseen_in_windows
 from twin.diagnosis import Cause, Diagnosis, Where

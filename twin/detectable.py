@@ -17,7 +17,7 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.catalog import effects as catalogued
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.diagnosis import EffectTest
 from twin.effect import Effect, Form, Parameter, Scales
 from twin.fit.channel import Channel

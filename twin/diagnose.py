@@ -11,9 +11,9 @@ from twin.admit import admit
 from twin.assemble import assembled
 from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
-from twin.choose.decide import DecisionRules
 from twin.choose.felt import felt_only
 from twin.choose.outside import inside
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.trim import spoken
 from twin.choose.twins import settled

@@ -10,7 +10,8 @@ from dataclasses import replace
 
 from twin.case import Case
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.witness import driven_by_model, left_of_position

@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from twin.case import Case
-from twin.choose.decide import Decision, DecisionRules, decide
+from twin.choose.decide import Decision, decide
 from twin.choose.lean import leaning
+from twin.choose.rules import DecisionRules
 from twin.choose.search import Searcher, SearchRules
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit

@@ -7,7 +7,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.case import make_case
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Settings

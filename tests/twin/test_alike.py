@@ -13,7 +13,8 @@ from logs.recording import Recording
 from tests.twin.judged import judged
 from twin.catalog import effect
 from twin.choose.alike import alike
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import LIKELY, belief, spoken
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights, weigh

@@ -14,7 +14,7 @@ from twin import thin
 from twin.by_condition import gap_by_condition
 from twin.case import make_case
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.diagnosis import Gap
 from twin.plant import Inserted, Plant

@@ -13,7 +13,7 @@ from tests.twin.judged import a_record, judged
 from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.detectable import detection_limits
 from twin.effect import Scales
 from twin.fit.channel import position_channel

@@ -14,7 +14,7 @@ from logs.recording import FloatArray
 from tests.twin.judged import a_record
 from twin.case import make_case
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights
 from twin.clock import clock_of

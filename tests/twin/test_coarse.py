@@ -15,7 +15,7 @@ from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.case import Margin, make_case, widened
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.score import student_log_likelihood
 from twin.choose.search import SearchRules
 from twin.choose.weigh import Weights

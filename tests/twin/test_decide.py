@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules, _fewer_unknowns, _worth
+from twin.choose.decide import _fewer_unknowns, _worth
+from twin.choose.rules import DecisionRules
 from twin.fit.space import Cause
 
 NAMES = ("creep", "spring_asymmetry", "stiction")

@@ -13,7 +13,7 @@ from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.case import make_case
 from twin.catalog import effect, effects
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.detectable import Detector, _nuisance, detection_limits, smallest_shown, unseen_in_windows
 from twin.diagnose import Settings, diagnose

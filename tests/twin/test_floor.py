@@ -15,8 +15,10 @@ from tests.twin.judged import a_record, judged
 from tests.twin.trials import SIGMA, staircase, trial_of
 from twin.case import Margin
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules, _likely_floor, decide, plainer
+from twin.choose.decide import _likely_floor, decide
 from twin.choose.findings import Findings
+from twin.choose.plainer import plainer
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import spoken, trimmed
 from twin.choose.weigh import Weights
 from twin.closure import rms

@@ -8,7 +8,7 @@ from control.design import DesignModel
 from tests.twin.straying import straying
 from twin.case import Case, make_case
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit, fit, starts_of

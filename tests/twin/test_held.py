@@ -13,7 +13,7 @@ from tests.twin.judged import a_record
 from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.plant import Inserted, Plant, reading_response

@@ -12,8 +12,10 @@ from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import Decision, DecisionRules, plainer
+from twin.choose.decide import Decision
 from twin.choose.lean import _Leaning, leaning
+from twin.choose.plainer import instead_of, plainer
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import dropped, trimmed
 from twin.choose.weigh import Weights, weigh
 from twin.diagnosis import Cause as Named
@@ -153,6 +155,11 @@ def test_an_effect_that_spares_the_numbers_nothing_and_explains_no_more_is_no_ca
     assert plainer(better, idle, rules).names == two.names
     works = replace(idle, mse=two.mse - 1.0)
     assert plainer(replace(better, fits=(better.fits[0], works)), works, rules) is works
+    # nor does it get its chance where one of the numbers is not enough: both do
+    one = next(f for f in findings.fits if len(f.names) == 1 and f.names[0] == two.names[0])
+    assert instead_of(better, idle, one, rules).names == two.names
+    assert instead_of(replace(better, fits=(better.fits[0], works)), works, one, rules) is works
+    assert instead_of(replace(better, fits=(idle,)), idle, one, rules) is idle
 
 
 def test_an_effect_that_spares_the_numbers_takes_the_place_of_an_idle_one() -> None:

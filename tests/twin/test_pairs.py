@@ -14,9 +14,10 @@ from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose.claims import together
-from twin.choose.decide import DecisionRules, decide
+from twin.choose.decide import decide
 from twin.choose.pairs import _best_of_each, _gains, promising_pairs
 from twin.choose.reform import in_laws, in_other_forms
+from twin.choose.rules import DecisionRules
 from twin.choose.screen import make_screen
 from twin.choose.search import Searcher, SearchRules, _better_of_each
 from twin.effect import Scales

@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.case import make_case
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.search import SearchRules
 from twin.fit.channel import position_channel
 from twin.plant import Plant

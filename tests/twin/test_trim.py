@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from twin.catalog import effect
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import _instead, doubtful
 from twin.fit.space import Cause
 

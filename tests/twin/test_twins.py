@@ -12,7 +12,8 @@ from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.catalog import effect
 from twin.choose.claims import together
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.choose.twins import _more_usual, settled, with_usual_twins
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, _sets, weigh

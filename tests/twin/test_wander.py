@@ -12,8 +12,9 @@ from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
-from twin.choose.decide import DecisionRules, decide
+from twin.choose.decide import decide
 from twin.choose.findings import Findings
+from twin.choose.rules import DecisionRules
 from twin.choose.score import make_yardstick
 from twin.diagnose import diagnose
 from twin.fit.channel import pressure_channel

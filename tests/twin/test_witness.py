@@ -14,8 +14,9 @@ from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.straying import read, slow, straying
 from twin.case import Case, make_case
 from twin.catalog import effect
-from twin.choose.decide import Decision, DecisionRules, decide
+from twin.choose.decide import Decision, decide
 from twin.choose.findings import Findings
+from twin.choose.rules import DecisionRules
 from twin.choose.score import make_yardstick
 from twin.choose.search import SearchRules
 from twin.choose.trim import SLIGHT, spoken

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
 
 

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.claims import hollow, size_of
+from twin.choose.claims import size_of
 from twin.choose.findings import Findings
-from twin.choose.idle import idle
+from twin.choose.plainer import effects_of, instead_of, plainer
 from twin.choose.reform import bent_by, lays_open
+from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
 
@@ -27,32 +28,6 @@ _EXACT = 1.1
 _SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
 _ABOVE_BEST = 1.5
-
-
-@dataclass(frozen=True, slots=True)
-class DecisionRules:
-    """Thresholds, chosen on the calibration bank and never on published blind trials (docs/calibration.md).
-
-    Gains are in units of the noise variance: 1 means as large as the noise itself. `gain` is raised to what a healthy
-    machine leaves, where that is known; `further` is what a cause beside others has to gain where they leave more.
-    `share` of the gap is what a further cause has to explain, or, if it explains nearly all of the rest, `trifle`.
-    """
-
-    gain: float = 0.15
-    further: float = 0.15
-    evidence: float = 12.0
-    share: float = 0.02
-    trifle: float = 0.0005
-    thorough: float = 0.55
-    complete: float = 0.8
-    erratic: float = 0.7
-    large_share: float = 0.2
-    unexplained: float = 0.2
-    nothing_left: float = 1.15
-    plain: float = 0.05
-    plain_share: float = 0.005
-    quiet: float = 2.0
-    within: float = 0.0  # mean squared residual that the healthy machine leaves, where that is known (`Margin`)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -96,7 +71,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             plain = plainer(findings, better, rules)
             if not _worth(findings, accepted, plain, rules, floor):
                 break
-            instead, better = (better if plain is not better else None), plain
+            instead, better = (instead_of(findings, better, plain, rules) if plain is not better else None), plain
         elif instead is not None:
             # wrong numbers are not enough: the effect that they were taken for gets its chance
             better, instead = instead, None
@@ -129,46 +104,6 @@ def rest_of(findings: Findings, fit: Fit, floor: float) -> float:
     return max(fit.mse - floor, 0.0) / before if before > 0.0 else 0.0
 
 
-def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
-    """Wrong design numbers alone instead of `fit`, if what `fit` does better is immaterial: the plainer cause wins.
-
-    So is whatever it does better than the healthy machine would.
-    Several numbers are no plainer than one effect: they have to have the better evidence too, unless the effect is
-    idle beside the numbers that it brings along. Its place is another's, then, that spares the numbers their moves.
-    """
-    if size_of(fit) > 1:
-        return fit
-    slack = slack_of(findings, rules)
-    alone = [f for f in findings.fits if f.names and all(c.effect is None for c in f.space.causes)]
-    near = [f for f in alone if f.mse <= max(fit.mse + slack, rules.within)]
-    spares = not idle(findings, fit, slack)
-    if spares:
-        near = [f for f in near if len(f.names) == 1 or findings.score(f) >= findings.score(fit)]
-    if not near:
-        return fit
-    least = min(near, key=lambda f: (len(f.names), -findings.score(f)))
-    # a further number has to be worth as much as any further cause
-    fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
-    least = min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
-    return least if spares or len(least.names) == 1 else _sparing(findings, fit, least, slack)
-
-
-def _sparing(findings: Findings, idler: Fit, numbers: Fit, slack: float) -> Fit:
-    """The likeliest effect that does as well as an idle one without moving the numbers, or the several `numbers`.
-
-    A gain of an unmeasured pressure moves three numbers at once, and is one cause.
-    """
-    near = [f for f in findings.fits if size_of(f) == 1 and _effects(f) and f.mse <= idler.mse + slack]
-    near = [f for f in near if findings.score(f) > findings.score(numbers) and not hollow(f, findings.phi)]
-    likely = sorted(near, key=findings.score, reverse=True)
-    return next((f for f in likely if not idle(findings, f, slack)), numbers)
-
-
-def slack_of(findings: Findings, rules: DecisionRules) -> float:
-    """By how much more of the noise variance a plain hypothesis may leave."""
-    return max(rules.plain, rules.plain_share * (findings.none.mse - 1.0))
-
-
 def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     """`fit`, or the same with a wrong number in place of one effect, if what the effect does better is immaterial."""
     if len(fit.names) < 2:
@@ -178,7 +113,9 @@ def _plainer_member(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
         for f in findings.fits
         if len(f.names) == len(fit.names) and f.mse <= fit.mse + rules.plain and len(set(fit.names) - set(f.names)) == 1
     ]
-    near = [f for f in near if _effects(f) < _effects(fit) and findings.score(f) > findings.score(fit) - rules.evidence]
+    near = [
+        f for f in near if effects_of(f) < effects_of(fit) and findings.score(f) > findings.score(fit) - rules.evidence
+    ]
     return max(near, key=findings.score) if near else fit
 
 
@@ -202,11 +139,7 @@ def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
 def _with_another(f: Fit, fit: Fit) -> bool:
     """Whether `f` is `fit` with another effect in the place of one cause."""
     other = len(f.names) == len(fit.names) and len(set(fit.names) - set(f.names)) == 1
-    return other and bool(_effects(f) - _effects(fit))
-
-
-def _effects(fit: Fit) -> set[str]:
-    return {c.name for c in fit.space.causes if c.effect is not None}
+    return other and bool(effects_of(f) - effects_of(fit))
 
 
 def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:

@@ -11,7 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from twin.choose.claims import same_claim, size_of
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.effect import Scales
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import SHIFTED, Cause, make_space

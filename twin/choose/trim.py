@@ -12,10 +12,12 @@ from dataclasses import replace
 from twin.catalog import effects
 from twin.choose.alike import alike
 from twin.choose.claims import size_of
-from twin.choose.decide import Decision, DecisionRules, slack_of
+from twin.choose.decide import Decision
 from twin.choose.findings import Findings
 from twin.choose.idle import idle
+from twin.choose.plainer import slack_of
 from twin.choose.reach import moved_square
+from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 

@@ -9,7 +9,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from twin.catalog import effects
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import trimmed
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, stands_in, twins_of

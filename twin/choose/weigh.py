@@ -13,8 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from twin.choose.claims import hollow, size_of
-from twin.choose.decide import Decision, DecisionRules, slack_of
+from twin.choose.decide import Decision
 from twin.choose.idle import idle
+from twin.choose.plainer import slack_of
+from twin.choose.rules import DecisionRules
 from twin.choose.usual import log_usual
 from twin.fit.fitting import Fit
 

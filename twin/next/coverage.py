@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 from control.experiment import Experiment
 from twin.catalog import effects
-from twin.choose.decide import Decision, DecisionRules
+from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.diagnosis import EffectTest
 from twin.effect import Form, Parameter, Scales
 from twin.next.candidates import library

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from control.experiment import Experiment
 from control.preview import duration_words
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest, NextExperiment
 from twin.next.coverage import best_coverage, blind_spots

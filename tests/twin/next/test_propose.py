@@ -15,7 +15,7 @@ from app.cli import cli
 from control.design import DesignModel
 from control.experiment_file import from_plain
 from tests.twin.next.two_lags import dispute, record, result
-from twin.choose.decide import DecisionRules
+from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest
 from twin.effect import Scales
