@@ -28,6 +28,8 @@ _EVENT_PROBABILITY = 0.97
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave, or noise that takes
 #: readings over the edges of coarse steps: it does so with its cube, and how much of it there is hardly shows in them.
 MISSED = 4.0
+#: Share of its step that a coarse reading keeps from flickering by.
+_FLICKER = 0.6
 #: Standard deviation of a size that comes from its form being a model, as a share of the size (docs/calibration.md).
 FORM_ERROR = 0.015
 #: Mean squared residual, noise = 1, that has to be common to repeats before it is a gap of the model.
@@ -120,6 +122,8 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
         sizes = estimates(decision.accepted, decision.findings.phi)
         for candidate in decision.accepted.space.causes:
             own = {k: v for k, v in sizes.items() if k[0] == candidate.name}
+            if _of_the_display(own, sensing):
+                continue
             fitted = {label: estimate for (_, label), estimate in own.items()}
             parameters = dict(sensing.accepted.get(candidate.name, {})) | fitted
             seen = _EVENT_PROBABILITY if candidate.name in sensing.accepted else 0.0
@@ -129,6 +133,16 @@ def _causes(result: StageResult, weighed: list[Weighed], sensing: Sensing) -> tu
         if name not in {c.name for c in causes}:
             causes.append(Cause(name, "sensor", _EVENT_PROBABILITY, None, found))
     return tuple(sorted(causes, key=lambda c: -c.probability))
+
+
+def _of_the_display(sizes: Mapping[tuple[str, str], Estimate], sensing: Sensing) -> bool:
+    """Whether a play of so little is what a coarse reading has itself.
+
+    One that moves on only when the position has left its step by something, so that noise does not make it flicker,
+    reads as a play before a converter without that.
+    """
+    play = sizes.get(("linkage_lost_motion", "play"))
+    return play is not None and sensing.sharp and play.value < _FLICKER * sensing.step
 
 
 def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:

@@ -12,6 +12,8 @@ _LEAST_LEVELS = 8
 _FEWEST, _FEW_OFTEN, _FEW_FIT = 5, 20, 0.1
 _FIT = 0.12  # rms distance from the lattice in steps: values without a lattice have 0.29
 _MOST = 200_000
+#: How far off a lattice a level is a stranger to it [steps], and how many of all levels may be; one always.
+_STRANGE, _STRANGERS = 0.1, 0.02
 #: Readings of each of the codes around one that never occurs, from which that is no chance (0.1 % by Poisson).
 _OFTEN = 7.0
 
@@ -48,6 +50,7 @@ def _of_few(gaps: FloatArray) -> float | None:
 
 def _fitted(gaps: FloatArray, candidate: float) -> float | None:
     """The step near the candidate that best explains the gaps as whole multiples; None if it does not."""
+    gaps = _without_strangers(gaps, candidate)
     near = gaps[np.abs(gaps / candidate - 1.0) < 0.4]
     step = float(np.mean(near))
     multiples = np.round(gaps / step)
@@ -60,6 +63,22 @@ def _fitted(gaps: FloatArray, candidate: float) -> float | None:
     apart = place - slope * index
     apart -= np.median(apart)
     return slope if float(np.median(np.abs(apart))) < _FIT * slope else None
+
+
+def _without_strangers(gaps: FloatArray, step: float) -> FloatArray:
+    """The gaps between the levels that lie on the lattice, where hardly any does not.
+
+    A display that moves on by whole steps only may still show, at first, what it was switched on with.
+    """
+    off = np.abs(gaps / step - np.round(gaps / step)) > _STRANGE
+    over = gaps[:-1] + gaps[1:]
+    between = off[:-1] & off[1:] & (np.abs(over / step - np.round(over / step)) < _STRANGE)
+    strangers = np.flatnonzero(between)
+    if strangers.size == 0 or strangers.size > max(1, _STRANGERS * gaps.size) or np.any(np.diff(strangers) < 2):
+        return gaps
+    kept = gaps.copy()
+    kept[strangers] += gaps[strangers + 1]
+    return np.delete(kept, strangers + 1)
 
 
 def step_doubt(values: FloatArray, step: float) -> float:
