@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.special import ndtri
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.kernels.elastic import stretches
@@ -60,6 +61,16 @@ _SHARE = Parameter(
     size=False,
 )
 
+_SCATTER = Parameter(
+    name="scatter",
+    kind="fraction",
+    lower=0.0,
+    upper=1.5,
+    starts=(0.1, 0.4),
+    scale=0.3,
+    doc="standard deviation of the logarithms of the widths",
+)
+
 _QUANTILES = (np.arange(PLAYS) + 0.5) / PLAYS
 
 
@@ -72,6 +83,11 @@ def _exponential(c: Coefficients, values: Sequence[float]) -> None:
     tail = -np.log1p(-_QUANTILES)
     reach = min(values[0], 0.5 * c.design.deadband)
     _set(c, reach * (tail / tail.mean() - 1.0), np.full(PLAYS, 1.0 / PLAYS))
+
+
+def _lognormal(c: Coefficients, values: Sequence[float]) -> None:
+    widths = np.exp(values[0] * ndtri(_QUANTILES))
+    _set(c, 0.5 * c.design.deadband * (widths / widths.mean() - 1.0), np.full(PLAYS, 1.0 / PLAYS))
 
 
 def _partly_soft(c: Coefficients, values: Sequence[float]) -> None:
@@ -126,7 +142,8 @@ EFFECT = Effect(
     equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0; turns_over_a_distance: "
     "friction is the half deadband times the mean of z_j / q_j, springs z_j that x stretches and that slip at "
     "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance; "
-    "dahl: p = offset + w/k + half deadband * F, dF/dw = (1 - F sgn(dw)) / distance",
+    "dahl: p = offset + w/k + half deadband * F, dF/dw = (1 - F sgn(dw)) / distance; "
+    "lognormal: half widths in proportion to exp(scatter z), z normal",
     source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996); "
     "Iwan, J. Appl. Mech. 33 (1966) 893; Al-Bender, Lampaert, Swevers, IEEE Trans. Autom. Control 50 (2005) 1883; "
     "Dahl, The Aerospace Corporation, TOR-0158(3107-18)-1 (1968)",
@@ -136,6 +153,7 @@ EFFECT = Effect(
         Form("turns_over_a_distance", (_PRESLIDING,), _turns),
         Form("dahl", (_DISTANCE,), _dahl),
         Form("two_plays", (_SHARE, *_spread("by how much the half widths of the two plays differ")), _two),
+        Form("lognormal", (_SCATTER,), _lognormal),
         Form("exponential", _spread("mean excess of exponentially distributed half widths"), _exponential),
     ),
     twins=("stiction", "creep"),
