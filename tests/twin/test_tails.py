@@ -64,6 +64,14 @@ def test_gaussian_noise_has_nothing_to_say() -> None:
     assert heavy_tail(seen) == []
 
 
+def test_a_single_reading_is_nothing_to_speak_of() -> None:
+    record = readings(False)
+    record.position[4000] += 12.0 * NOISE_IN
+    seen = sensed(record)
+    assert seen.bad_rows[0].sum() == 1 and "sensor_dropouts" not in seen.accepted
+    assert heavy_tail(seen) == []
+
+
 def test_recordings_count_together() -> None:
     """Two of three readings say nothing; of twelve alike hardly one would lie so near."""
     few = Tail(2, np.array([1.3, 1.3]))
