@@ -1,10 +1,10 @@
 """Examines the diagnosis with somebody's sealed folder: `python -m bench.exam FOLDER --out ANSWERS [--processes 2]`.
 
 The folder holds `design.toml` (or none), `caseNN/*.csv` (the recordings of one machine each) and `SEALED.json`: for
-each case its class (healthy, number, single, pair, outsider) and its true causes. `unseen/caseNN.csv` with
-`unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same machine on a record that the
-diagnosis is never shown. The program is called as anybody calls it; every answer stays in ANSWERS, and a run that was
-stopped goes on where it was. The labels are opened when the last answer is written.
+each case, by themselves or all under `cases`, its class (healthy, number, single, pair, outsider) and its true causes.
+`unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same
+machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
+ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
 """
 
 from __future__ import annotations
@@ -112,9 +112,10 @@ def main() -> None:
     design = options.folder / "design.toml"
     travel_in = (load_design(design) if design.exists() else DesignModel()).travel
     sealed = json.loads((options.folder / "SEALED.json").read_text(encoding="utf-8"))
+    sealed = sealed.get("cases", sealed)
     said = {case: json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")) for case in cases}
     try:
-        print(text([Answer(case, label_of(case, sealed[case]), said[case], travel_in) for case in cases]))
+        print(text([Answer(case, label_of(case, sealed.get(case)), said[case], travel_in) for case in cases]))
     except BadInput as error:
         sys.exit(str(error))
 

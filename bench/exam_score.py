@@ -57,8 +57,13 @@ class Answer:
         return 1.0 - (after / before) ** 2 if before > floor_in else None
 
 
-def label_of(case: str, sealed: Mapping[str, Any]) -> Label:
-    """The label of one case of `SEALED.json`. Raises: `BadInput` for a class or a name that nobody knows."""
+def label_of(case: str, sealed: Mapping[str, Any] | None) -> Label:
+    """The label of one case of `SEALED.json`.
+
+    Raises: `BadInput` for a case without a class and its true causes, and for a class or a name that nobody knows.
+    """
+    if sealed is None or not {"cls", "truth"} <= sealed.keys():
+        raise BadInput(f"SEALED.json: {case} has no label; give it a class (cls) and its true causes (truth)")
     if sealed["cls"] not in KINDS:
         raise BadInput(f"SEALED.json: {case}: class {sealed['cls']!r} is none of {', '.join(KINDS)}")
     kind = KINDS[sealed["cls"]]

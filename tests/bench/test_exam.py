@@ -126,7 +126,10 @@ def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) ->
     (folder / "SEALED.json").write_text(json.dumps(sealed | {"case02": {"cls": "odd", "truth": []}}), encoding="utf-8")
     with pytest.raises(SystemExit, match="case02: class 'odd'"):
         exam.main()
-    (folder / "SEALED.json").write_text(json.dumps(sealed), encoding="utf-8")
+    (folder / "SEALED.json").write_text(json.dumps({"case01": sealed["case01"]}), encoding="utf-8")
+    with pytest.raises(SystemExit, match="case02 has no label"):
+        exam.main()
+    (folder / "SEALED.json").write_text(json.dumps({"seed": 1, "cases": sealed}), encoding="utf-8")
     exam.main()
     said = capsys.readouterr().out
     assert "| 2 | 2 of 2 | 1 of 1 | 1 of 1 | 1 of 1 | 0 of 0 | 0 of 0 |" in said
