@@ -2,10 +2,9 @@
 
 It plays the test sequence to a healthy valve, and holds it at positions in closed loop, fits the design's numbers stage
 by stage with what these records show (a booster behind the converter's pilot; friction in motion that grows as the stem
-slows down; stops that it lands on softly; curves that are not quite parallel; a filtered reading), writes
-`app/blind/baselines/reference.toml`, and measures what this model leaves on seeds that it has not seen: "nothing is
-wrong" in a blind trial means nothing beyond that margin (`reference_margin.toml`). Run it anew whenever the physics of
-the reference plant change.
+slows down; curves that are not quite parallel; a filtered reading), writes `app/blind/baselines/reference.toml`, and
+measures what this model leaves on seeds that it has not seen: "nothing is wrong" in a blind trial means nothing beyond
+that margin (`reference_margin.toml`). Run it anew whenever the physics of the reference plant change.
 """
 
 from __future__ import annotations
@@ -46,8 +45,8 @@ SEED, FRESH = 101, (102, 103, 104)
 ROUNDS, DOUBT = 3, 0.1
 #: What the valve behind the converter shows, by the position.
 STEM = (
-    ("friction_in_motion", "elastic_landing"),
-    ("stiction", "falling_with_speed_squared"),
+    ("friction_in_motion", "elastic"),
+    ("stiction", "falling_with_speed"),
     ("spring_asymmetry", "at_stem"),
     ("sensor_lag", "first_order"),
 )
