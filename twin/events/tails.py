@@ -27,7 +27,7 @@ _UNLIKELY = 0.01
 @dataclass(frozen=True, slots=True)
 class Tail:
     """Readings away from both neighbours: how many stand out by `NEAR` of what false ones do or more, and how far those
-    do that are called false, 1 = just so far (`excess`, shape (k,))."""
+    of them do that are called false, 1 = just so far (`excess`, shape (k,))."""
 
     near: int
     excess: FloatArray
@@ -38,7 +38,7 @@ class Tail:
         far = self.excess.size
         if far == 0:
             return False
-        few = float(binom.sf(far - 1, max(self.near, far), NEAR**_POWER)) > _UNLIKELY
+        few = float(binom.sf(far - 1, self.near, NEAR**_POWER)) > _UNLIKELY
         # logarithms of Pareto's excesses are exponential, with a mean of 1 / power
         return bool(few and np.log(self.excess).mean() < (1.0 + 2.0 / np.sqrt(far)) / _POWER)
 

@@ -64,17 +64,17 @@ def test_a_stem_held_by_its_tails_begins_where_it_was_read(form: str) -> None:
     assert np.abs(whole - forgetful)[30:].max() > 0.005
 
 
-def test_a_loose_core_with_a_lead_is_not_pushed_to_and_fro_at_each_row() -> None:
-    names = [("sensor_lag", "leads"), ("linkage_lost_motion", "play")]
-    plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
-    record, start = jagged_record(), Start(9.0, 0.1, 0.1)
-    _, position = live(plant, record, start)
-    _, whole = simulate_recording(plant, record, start=start)
-    assert np.max(np.abs(position - whole)) < 1e-9
-
-
-def test_a_spread_of_plays_with_friction_in_the_motion_begins_at_rest() -> None:
-    names = [("distributed_hysteresis", "uniform"), ("friction_in_motion", "full")]
+@pytest.mark.parametrize(
+    "names",
+    [
+        pytest.param([("sensor_lag", "leads"), ("linkage_lost_motion", "play")], id="pushed to and fro"),
+        pytest.param([("distributed_hysteresis", "uniform"), ("friction_in_motion", "full")], id="begins at rest"),
+        pytest.param([("sensor_lag", "three_poles"), ("additional_lag", "mass_on_spring")], id="five filters"),
+    ],
+)
+def test_two_effects_that_share_a_state_equal_the_simulation_of_the_whole_record(names: list[tuple[str, str]]) -> None:
+    """A loose core with a lead is not pushed at each row, a spread of plays with friction in the motion begins at rest,
+    and filters of both effects stand one behind the other."""
     plant = Plant(DesignModel(), tuple(inserted(n, effects()[n].form(f)) for n, f in names))
     record, start = jagged_record(), Start(9.0, 0.1, 0.1)
     _, position = live(plant, record, start)
