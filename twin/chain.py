@@ -19,7 +19,7 @@ from twin.kernels.ep import boosted
 from twin.live.converter import Converter
 from twin.live.valve import Valve
 from twin.plant import pressure_response, stem_response
-from twin.slots import EP_AIR
+from twin.slots import EP_AIR, EP_STROKE
 from twin.timegrid import TimeGrid
 
 #: Longest block [s]: a stem changes its speed over its lag, and an inner step of the kernels is shorter.
@@ -30,7 +30,7 @@ _ROUNDS, _AGREE = 25, 3e-5
 
 def takes_air(c: FloatArray) -> bool:
     """Whether the stem acts back on the pressure; `c`: the converter's coefficients."""
-    return boosted(c) and bool(c[EP_AIR] > 0.0)
+    return bool(c[EP_STROKE] != 0.0 or (boosted(c) and c[EP_AIR] > 0.0))
 
 
 def chain_response(

@@ -49,7 +49,8 @@ EP_MIXED_S = 31  # lag of what comes out of a dead time [s]
 EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port or a shut pilot shows it [-]; 0: nobody asks
 EP_DRIFTS = 33  # by how much the zero moves in the end [pressure]
 EP_DRIFTS_S = 34  # and with which time constant, from the beginning of each recording [s]
-EP_COUNT = 35
+EP_STROKE = 35  # what a stroke of the stem takes from the pressure until air has come after it [pressure/position]
+EP_COUNT = 36
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

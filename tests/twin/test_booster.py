@@ -172,7 +172,7 @@ def test_it_is_tried_where_the_pressure_was_measured() -> None:
         causes = [c for c in effect_causes(channel) if c.name == "ep_rate_limit"]
         return {c.form.name for c in causes if c.form is not None}
 
-    assert forms(pressure_channel([trial], 0.01)) == {"symmetric", "up_and_down", "ramped", "orifices"}
+    assert forms(pressure_channel([trial], 0.01)) == {"symmetric", "up_and_down", "ramped", "orifices", "stroke"}
     assert forms(chain_channel([chain], 0.01)) == {"symmetric", "up_and_down", "ramped"}
 
 

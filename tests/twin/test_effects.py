@@ -11,6 +11,7 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.catalog import effect, effects
+from twin.chain import takes_air
 from twin.effect import Effect, Form, Parameter, Scales
 from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
@@ -70,10 +71,11 @@ def response(
     time_s, command = time_s * scales.time, command * scales.pressure
     grid = make_grid(time_s, 0.05 * scales.time)
     c = plant.coefficients(float(time_s[-1]), place)
-    pressure = pressure_response(c, grid, command, float(command[0]))
-    return np.array(
-        [pressure[grid.offsets], reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)]
-    )
+    stem = None
+    for _ in range(1 + takes_air(c.ep)):  # one round is enough to see that a stem acts back
+        pressure = pressure_response(c, grid, command, float(command[0]), stem)
+        stem = stem_response(c, grid, pressure, 0.0, 0.0)
+    return np.array([pressure[grid.offsets], reading_response(c, grid, stem, pressure)])
 
 
 def typical(form: Form) -> list[float]:
@@ -168,8 +170,8 @@ def test_other_units_are_the_same_physics(one: Effect, form: Form) -> None:
     values = tuple(v * scales.factor(p.kind) for v, p in zip(typical(form), form.parameters, strict=True))
     other = response(one.name, form, values, scales) / np.array([[scales.pressure], [scales.position]])
     off = np.abs(other - response(one.name, form, tuple(typical(form))))
-    # Where the response jumps, rounding may move a jump by one fine step.
-    assert np.quantile(off, 0.9) < 1e-9
+    # Where the response jumps, rounding may move a jump by one fine step; kPa of an atmosphere are rounded, too.
+    assert np.quantile(off, 0.9) < 1e-6
     assert all(p.smooth for p in form.parameters) <= (off.max() < 1e-6)
 
 

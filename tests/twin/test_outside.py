@@ -60,6 +60,7 @@ def answered(*records: Recording) -> Outcome:
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),
         (with_form("lvdt_calibration", "picks_up", 0.02, 0.0), "the reading picks up the pressure or the command"),
         (with_form("sensor_lag", "leads", 0.5), "the reading picks up the speed of the stem"),
+        (with_form("ep_rate_limit", "stroke", 0.2), "the stroke of the stem moves the pressure"),
     ],
 )
 def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: str) -> None:
@@ -107,6 +108,19 @@ def test_a_reading_picks_up_the_speed_of_the_stem() -> None:
     np.testing.assert_allclose(reading[stands], stem[grid.offsets][stands], atol=1e-12)
 
 
+def test_a_stroke_takes_pressure_that_the_converter_gives_back() -> None:
+    """Of a stem that runs evenly, against the lag of a ramp in closed form; the converter goes on where it stands."""
+    time_s = 0.1 * np.arange(200)
+    grid = make_grid(time_s, 0.01)
+    stem = 0.02 * np.clip(grid.fine_time_s - 5.0, 0.0, 10.0)
+    c = with_form("ep_rate_limit", "stroke", 0.2).coefficients(20.0)
+    pressure = pressure_response(c, grid, np.full(200, 8.0), 8.0, stem)[grid.offsets]
+    per_in, tau_s = 0.2 / DESIGN.compliance, DESIGN.ep_tau_s
+    runs, stands = np.clip(time_s - 5.0, 0.0, 10.0), np.clip(time_s - 15.0, 0.0, None)
+    taken = per_in * 0.02 * tau_s * -np.expm1(-runs / tau_s) * np.exp(-stands / tau_s)
+    np.testing.assert_allclose(pressure, 8.0 - taken, atol=2e-4)
+
+
 def test_where_the_stem_begins_goes_by_what_its_reading_picks_up() -> None:
     """A record that begins in the middle of the band: the stem is where the reading is, less what it picks up."""
     record = a_record(Plant(DESIGN))
@@ -129,6 +143,7 @@ def test_what_it_resembles_is_named_as_before() -> None:
         ORIFICE,
         steady,
         spread,
+        ("ep_rate_limit", "orifices", (0.5, 0.5, 0.8)),
     )
     for name, form, values in alike:
         found = answered(a_record(with_form(name, form, *values))).diagnosis
@@ -159,6 +174,7 @@ def test_no_rival_is_in_an_updated_model() -> None:
         drifts,
         picks_up,
         ("sensor_lag", "leads"),
+        ("ep_rate_limit", "stroke"),
         *snaps,
     }
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))

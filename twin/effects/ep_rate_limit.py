@@ -19,6 +19,7 @@ from twin.slots import (
     EP_RATE_UP,
     EP_REFERENCE,
     EP_SLEW,
+    EP_STROKE,
     FOREVER,
 )
 
@@ -57,6 +58,16 @@ _AIR = Parameter(
     size=False,
 )
 
+_STROKE = Parameter(
+    name="stroke",
+    kind="fraction",
+    lower=-1.0,
+    upper=4.0,
+    starts=(0.1, -0.1, 0.5),
+    scale=0.1,
+    doc="what a sudden full stroke takes from the pressure, as a share of what moves the stem over its travel",
+)
+
 
 def _rate(slowness: float) -> float:
     return 1.0 / slowness if slowness > 1.0 / FOREVER else FOREVER
@@ -87,13 +98,18 @@ def _orifices(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_AIR] = values[2] / d.travel
 
 
+def _stroke(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[EP_STROKE] = values[0] / c.design.compliance
+
+
 EFFECT = Effect(
     name="ep_rate_limit",
     stage="ep",
     claim="The slope of the pressure is bounded by flow capacity.",
     equations="|dp/dt| <= 1 / slowness; ramped: the goal of the lag moves no faster than 1 / slowness; orifices: "
     "V dp/dt = flow - (p + p_a) dV/dt, V = 1 + air * x / travel; flow: 1 / slowness_up rising, falling with ISO 6358's "
-    "outflow at p over that at the offset; in proportion near the goal",
+    "outflow at p over that at the offset; in proportion near the goal; a stroke that moves the pressure limits no "
+    "rate, it only resembles it: dp/dt = (u - p) / tau - stroke / k dx/dt",
     source="Andersen, The Analysis and Design of Pneumatic Systems (Wiley 1967); ISO 6358-1 (choked flow)",
     forms=(
         Form("symmetric", (_slowness("slowness", "least time per unit of pressure, 1 / rate limit"),), _symmetric),
@@ -116,6 +132,7 @@ EFFECT = Effect(
             _orifices,
             by_pressure=True,
         ),
+        Form("stroke", (_STROKE,), _stroke, by_pressure=True, outside="the stroke of the stem moves the pressure"),
     ),
     twins=("fill_exhaust_asymmetry",),
     absorbs=("ep_tau",),

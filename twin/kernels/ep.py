@@ -11,7 +11,9 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
+from twin.kernels.follow import follow
 from twin.kernels.ringing import ringing_pass
+from twin.kernels.stroke import struck
 from twin.slots import (
     EP_AIR,
     EP_BAND,
@@ -34,6 +36,7 @@ from twin.slots import (
     EP_RATE_UP,
     EP_RINGS_S,
     EP_SLEW,
+    EP_STROKE,
     EP_SUPPLY,
     EP_TANK,
     EP_TAU_FALL_S,
@@ -41,8 +44,6 @@ from twin.slots import (
     EP_ZERO,
     FOREVER,
 )
-
-_SAME = 1e-9
 
 
 def ep_kernel(
@@ -66,7 +67,9 @@ def ep_kernel(
     elif bounded(c):
         follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
     else:
-        _follow(time_s, offsets, goal, c, p0, out)
+        follow(time_s, offsets, goal, c, p0, out)
+    if c[EP_STROKE] != 0.0 and stem is not None:
+        out -= struck(time_s, offsets, np.ascontiguousarray(stem), c, float(stem[0]))[0]
 
 
 def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float) -> FloatArray:
@@ -222,27 +225,3 @@ def _mixed(
             out[f] = wanted + (held - wanted) * (1.0 - left) * mixed_s / h
             held = wanted + (held - wanted) * left
     return held
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _follow(
-    time_s: FloatArray, offsets: np.ndarray, goal: FloatArray, c: FloatArray, p0: float, out: FloatArray
-) -> None:
-    """A lag toward the goal, exact for a goal that is constant within a fine step."""
-    per_row = goal.size == time_s.size
-    p = p0
-    out[0] = p
-    last_h = -1.0
-    e_rise = e_fall = 0.0
-    for i in range(1, time_s.size):
-        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
-        if abs(h - last_h) > _SAME * h:
-            last_h = h
-            e_rise = np.exp(-h / max(c[EP_TAU_RISE_S], 1e-12))
-            e_fall = np.exp(-h / max(c[EP_TAU_FALL_S], 1e-12))
-        v = goal[i]
-        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            if not per_row:
-                v = goal[f]
-            p = v + (p - v) * (e_rise if v > p else e_fall)
-            out[f] = p

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 
 import numpy as np
@@ -11,7 +12,6 @@ from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.ep import (
     _banded,
-    _follow,
     _mean_command,
     _mixed,
     _slewed,
@@ -21,7 +21,9 @@ from twin.kernels.ep import (
     through_ports,
     zero,
 )
+from twin.kernels.follow import follow
 from twin.kernels.ringing import ringing_pass
+from twin.kernels.stroke import struck
 from twin.slots import (
     EP_AIR,
     EP_AMBIENT,
@@ -33,6 +35,7 @@ from twin.slots import (
     EP_MIXED_S,
     EP_RINGS_S,
     EP_SLEW,
+    EP_STROKE,
     EP_ZERO,
     FOREVER,
 )
@@ -52,6 +55,7 @@ class Converter:
         self._aim, self._ringing = p0, np.array([p0, 0.0])
         self._sunk = np.zeros(1)
         self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
+        self._plain, self._filled = p0, math.nan  # the pressure but for the stroke; see `struck`
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, command: float, stem: FloatArray) -> FloatArray:
         """Pressure on the fine points of the row, shape (steps + 1,); `command` was in force over the row.
@@ -63,9 +67,14 @@ class Converter:
         if self._booster is not None:
             booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
         elif self._bounded:
-            follow_bounded(time_s, offsets, goal, self._c, self.pressure, self._sunk, out)
+            follow_bounded(time_s, offsets, goal, self._c, self._plain, self._sunk, out)
         else:
-            _follow(time_s, offsets, goal, self._c, self.pressure, out)
+            follow(time_s, offsets, goal, self._c, self._plain, out)
+        self._plain = float(out[-1])
+        if self._c[EP_STROKE] != 0.0:
+            filled = float(stem[0]) if math.isnan(self._filled) else self._filled
+            taken, self._filled = struck(time_s, offsets, np.broadcast_to(stem, out.shape), self._c, filled)
+            out -= taken
         self.pressure = float(out[-1])
         return out
 
@@ -76,6 +85,7 @@ class Converter:
             room = 1.0 + self._c[EP_AIR] * max(stem, 0.0)
             self._booster[0] -= self._c[EP_AIR] * absolute * further / room
             self.pressure = float(self._booster[0])
+        self.pressure -= self._c[EP_STROKE] * further
         return self.pressure
 
     def _goal(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:

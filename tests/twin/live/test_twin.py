@@ -10,6 +10,7 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.catalog import effects
+from twin.chain import takes_air
 from twin.effect import Form, Scales
 from twin.live.twin import LiveTwin
 from twin.plant import Inserted, Plant
@@ -47,8 +48,10 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     record, start = jagged_record(), Start(7.0, 0.1, 0.12)
     pressure, position = live(plant, record, start)
     whole_p, whole_y = simulate_recording(plant, record, start=start)
-    assert np.max(np.abs(pressure - whole_p)) < 1e-9
-    assert np.max(np.abs(position - whole_y)) < 1e-9
+    # a stem that acts back on the pressure goes side by side with it, through blocks of a twentieth of a second
+    close = 1e-3 if takes_air(plant.coefficients(record.duration_s).ep) else 1e-9
+    assert np.max(np.abs(pressure - whole_p)) < close
+    assert np.max(np.abs(position - whole_y)) < close
     assert np.ptp(position) > 0.1
 
 
