@@ -24,7 +24,7 @@ from twin.effect import Scales
 from twin.far_readings import heavy_tail
 from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, explained_to_noise, retuning_pays, shown_by_pressure, upheld
+from twin.gap import GapParts, retuning_pays
 from twin.hearing import Hearing
 from twin.lateness import late_commands
 from twin.next.propose import propose
@@ -121,9 +121,8 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed)
     known.judgement = hearing.judgement(result)
     progress("held-out gap", 0.0)
-    result, judgement, parts = hearing.held_out(result, known.judgement, progress)
+    result, judgement, parts = hearing.held_out(result, known.judgement, progress, case.sigma_y)
     everything = replace(everything, decisions=result.decisions)
-    parts, judgement = _upheld(parts, judgement, case, result, sensing, itself.disturbed)
     known.judgement = judgement
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
@@ -151,15 +150,6 @@ def _pressures(case: Case, final: Plant) -> tuple[tuple[FloatArray, ...], tuple[
         return None
     before, after = (tuple(predict_pressure(p, t) for t in case.trials) for p in (case.base, final))
     return before, after
-
-
-def _upheld(
-    parts: GapParts, judgement: Judgement, case: Case, result: StageResult, sensing: Sensing, disturbed: bool
-) -> tuple[GapParts, Judgement]:
-    """`upheld`, with what the result says of the channels."""
-    measured, wandering, exact = case.sigma_p is not None, result.decisions[-1].floor, explained_to_noise(result)
-    told = (measured, wandering, disturbed, exact, shown_by_pressure(result))
-    return upheld(parts, judgement, case.sigma_y, sensing, *told)
 
 
 def _found(known: Known, settings: Settings, progress: Progress) -> tuple[Prepared, Settings, StageResult]:

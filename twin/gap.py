@@ -118,7 +118,9 @@ def upheld(
         return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
         return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
-    vain = after > NO_BETTER * before or _doubted(judgement, exact)
+    # what the pressure shows need not reach the stem, unless that is clearly off
+    told = before <= CLEAR * floor and all(c.name in shown for c in judgement.causes)
+    vain = (after > NO_BETTER * before and not told) or _doubted(judgement, exact)
     # how much an unmeasured pressure wandered by itself nobody knows
     hardly = HARDLY if apart else SLIGHT
     if before <= hardly * floor or (vain and before < SLIGHT * floor):

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from twin.case import Case
-from twin.choose.trim import dropped, spoken
+from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, heldout_parts, idle_cause
+from twin.gap import GapParts, explained_to_noise, heldout_parts, idle_cause, shown_by_pressure, upheld
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement, pronounce
@@ -33,9 +33,27 @@ class Hearing:
         return pronounce(result, self.sensing, self.ep_share, self.weights, self.disturbed)
 
     def held_out(
+        self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
+    ) -> tuple[StageResult, Judgement, GapParts]:
+        """Everything on unseen data, without the causes that are of no use there. `floor`: see `upheld`.
+
+        Where what is behind the pressure would take with it what the pressure shows by itself, that is heard alone.
+        """
+        result, judgement, parts = self._needed(result, judgement, progress)
+        upholds = self._upheld(result, judgement, parts, floor)
+        shown = shown_by_pressure(result)
+        behind = {c.name for c in judgement.causes} - set(shown)
+        if upholds[1].verdict != "unexplained" or not shown or not behind:
+            return result, upholds[1], upholds[0]
+        less = replace(result, decisions=(result.decisions[0], *map(silent, result.decisions[1:])))
+        alone = self.judgement(less)
+        parts = heldout_parts(self.case, less, alone, self.retuned, self.sensing, progress)
+        parts, alone = self._upheld(less, alone, parts, floor)
+        return (less, alone, parts) if alone.causes else (result, upholds[1], upholds[0])
+
+    def _needed(
         self, result: StageResult, judgement: Judgement, progress: Progress
     ) -> tuple[StageResult, Judgement, GapParts]:
-        """Everything on unseen data, without the causes that are of no use there."""
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         while idle := idle_cause(parts, judgement, result, self.case.travel):
             decisions = tuple(dropped(d, idle) if idle in d.names else d for d in result.decisions)
@@ -46,3 +64,11 @@ class Hearing:
             judgement = self.judgement(result)
             parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, judgement, parts
+
+    def _upheld(
+        self, result: StageResult, judgement: Judgement, parts: GapParts, floor: float
+    ) -> tuple[GapParts, Judgement]:
+        """`upheld`, with what the result says of the channels."""
+        measured, wandering = self.case.sigma_p is not None, result.decisions[-1].floor
+        told = (measured, wandering, self.disturbed, explained_to_noise(result), shown_by_pressure(result))
+        return upheld(parts, judgement, floor, self.sensing, *told)

@@ -51,6 +51,17 @@ def test_it_is_named_beside_what_the_readings_showed_too() -> None:
         assert upheld(parts(0.9), every, 1.0, seen, True, shown=shown)[1].causes == names
 
 
+@pytest.mark.parametrize(
+    ("before", "shown", "verdict"),
+    [(1.8, ("supply_saturation",), "effect"), (1.8, (), "unexplained"), (2.6, ("supply_saturation",), "unexplained")],
+)
+def test_it_need_not_help_to_predict_a_stem_that_is_hardly_off(
+    before: float, shown: tuple[str, ...], verdict: str
+) -> None:
+    supply = Judgement("effect", (Named("supply_saturation", "ep", 0.9, None, {}),), (), ())
+    assert upheld(parts(before), supply, 1.0, NOTHING_SEEN, True, shown=shown)[1].verdict == verdict
+
+
 def test_the_pressure_shows_what_is_accepted_for_far_more_than_its_noise() -> None:
     def decision(name: str, level: float, explained: bool = True, exact: bool = False) -> Any:
         none = SimpleNamespace(mse=level)

@@ -9,9 +9,10 @@ import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import Recording
-from tests.twin.judged import UP_TO_TWO
+from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.case import make_case
+from twin.catalog import effect
 from twin.choose.decide import decide
 from twin.choose.findings import Findings
 from twin.choose.rules import DecisionRules
@@ -20,7 +21,7 @@ from twin.diagnose import diagnose
 from twin.fit.channel import pressure_channel
 from twin.fit.fitting import fit
 from twin.fit.space import make_space
-from twin.plant import Plant, pressure_response, reading_response, stem_response
+from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
 from twin.stages import StageResult, driven_about
 from twin.wander import wander
 
@@ -49,6 +50,17 @@ def test_what_wanders_is_noise_while_it_is_small(size_psi: float, verdict: str, 
     found = diagnose([wandering(size_psi)], DESIGN, (), UP_TO_TWO).diagnosis
     assert found.verdict == verdict
     assert any("wandering" in note.handled for note in found.data_quality) is said
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("change_psi", "verdict"), [(0.012, "no_gap"), (0.05, "unexplained")])
+def test_a_pressure_that_passes_for_healthy_has_no_zero_that_drifts(change_psi: float, verdict: str) -> None:
+    """It resembles one that drifts by a trifle, which is outside of the vocabulary, and no reason to give up."""
+    drifts = Inserted("ep_calibration", effect("ep_calibration").form("zero_drifts"), (-0.003, change_psi, 100.0))
+    record = a_record(Plant(DESIGN, (drifts,)))
+    noisy = record.position + np.random.default_rng(4).normal(0.0, 0.0016, record.n)
+    found = diagnose([replace(record, position=noisy)], DESIGN, (), UP_TO_TWO).diagnosis
+    assert found.verdict == verdict
 
 
 def unexplained(recordings: list[Recording]) -> StageResult:

@@ -15,6 +15,7 @@ from twin.choose.claims import size_of
 from twin.choose.decide import Decision
 from twin.choose.findings import Findings
 from twin.choose.idle import idle
+from twin.choose.needless import rival_in
 from twin.choose.plainer import slack_of
 from twin.choose.reach import moved_square
 from twin.choose.rules import DecisionRules
@@ -85,7 +86,7 @@ def _instead(findings: Findings, smaller: Fit, rules: DecisionRules) -> Fit:
 def dropped(decision: Decision, name: str) -> Decision | None:
     """The decision without one of its causes, whatever that leaves; None where the others were never tried alone."""
     if decision.names == (name,):
-        return _silent(decision)
+        return silent(decision)
     smaller = _without(decision, name)
     return None if smaller is None else replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
 
@@ -103,18 +104,21 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
     `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
     equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
     percent: where a signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the
-    stem so far that the position would not. It makes no answer either of a guess about a clear gap behind it.
+    stem so far that the position would not. It makes no answer either of a guess about a clear gap behind it. And a
+    pressure that passes for healthy and resembles something from outside of the vocabulary wanders a little.
     """
     guesses = [_guess(d, weights) for d in decisions]
     slight = [_slight(d) and not _reaches(d, decisions) for d in decisions]
     gaps = [bool(d.names) and not little for d, little in zip(decisions, slight, strict=True)]
     clear = seen or any(gaps)
     sure = seen or any(gap and not guess for gap, guess in zip(gaps, guesses, strict=True))
-    mute = [(sure and guess) or (clear and little) for guess, little in zip(guesses, slight, strict=True)]
-    return tuple(_silent(d) if one else d for d, one in zip(decisions, mute, strict=True))
+    vague = [little and _wanders(d) for d, little in zip(decisions, slight, strict=True)]
+    mute = [(sure and g) or (clear and s) or v for g, s, v in zip(guesses, slight, vague, strict=True)]
+    return tuple(silent(d) if one else d for d, one in zip(decisions, mute, strict=True))
 
 
-def _silent(decision: Decision) -> Decision:
+def silent(decision: Decision) -> Decision:
+    """The decision that there is nothing on this channel."""
     none = decision.findings.none
     return replace(decision, accepted=none, explained=False, gap=False, rest=decision.rest_of(none))
 
@@ -122,6 +126,11 @@ def _silent(decision: Decision) -> Decision:
 def _slight(decision: Decision) -> bool:
     """Whether the design alone leaves little more than the noise on this channel."""
     return bool(decision.names) and decision.findings.none.mse < SLIGHT * decision.floor
+
+
+def _wanders(decision: Decision) -> bool:
+    """Whether what a pressure does beside the command resembles something from outside of the vocabulary."""
+    return decision.findings.channel.name == "pressure" and rival_in(decision.accepted) is not None
 
 
 def _reaches(decision: Decision, decisions: Sequence[Decision]) -> bool:

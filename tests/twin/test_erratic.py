@@ -1,0 +1,45 @@
+"""What sticks is judged on unseen rows with numbers that half of the rows may not bend to the time of one slip."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record
+from twin.case import Case, make_case
+from twin.catalog import effect
+from twin.fit.channel import Channel, chain_channel
+from twin.fit.fitting import Fit, fit
+from twin.fit.space import Cause, make_space
+from twin.heldout import fold_weights, refitted
+from twin.plant import Inserted, Plant
+
+DESIGN = DesignModel()
+
+
+def fitted(name: str, form: str, values: tuple[float, ...]) -> tuple[Case, Channel, Fit]:
+    """A cause and the numbers of the design, from where they are true."""
+    one = effect(name)
+    case = make_case([a_record(Plant(DESIGN, (Inserted(name, one.form(form), values),)))], DESIGN)
+    channel = chain_channel(case.trials, case.sigma_y)
+    numbers = ["deadband", "offset", "compliance", "tau", "rate_limit"]
+    space = make_space(Plant(DESIGN), [Cause(name, one, one.form(form))], numbers, case.scales)
+    true = np.array(
+        [0.0] * len(numbers) + [v / u.unit for v, u in zip(values, space.unknowns[-len(values) :], strict=True)]
+    )
+    return case, channel, fit(channel, space, [true])
+
+
+@pytest.mark.parametrize(
+    ("name", "form", "values", "stays"),
+    [("stiction", "target_sticks", (0.1, 0.0035), True), ("creep", "one_tail", (0.05, 20.0), False)],
+)
+def test_half_of_the_rows_hardly_bend_the_numbers_of_what_sticks(
+    name: str, form: str, values: tuple[float, ...], stays: bool
+) -> None:
+    case, channel, found = fitted(name, form, values)
+    deviations = found.deviations(max(found.mse, 1.0) ** 0.5)
+    again = [refitted([found], [channel], weights)[0] for weights in fold_weights(case)]
+    bent = max(float(np.max(np.abs(a.values() - found.values()) / deviations)) for a in again)
+    assert (bent < 0.75) is stays
