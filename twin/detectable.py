@@ -24,9 +24,9 @@ from twin.fit.channel import Channel
 from twin.fit.least_squares import jacobian
 from twin.fit.numbers import nominal, reference, retuned, unit
 from twin.fit.space import make_space
-from twin.gap import EXPLAINED, HARDLY
 from twin.plant import Inserted, Plant
 from twin.remainder import SLIGHT
+from twin.upheld import EXPLAINED, HARDLY
 
 _STEPS = 5
 #: A size is near enough when what it shows is within these bounds of what is needed.
@@ -78,7 +78,7 @@ def detection_limits(
 
 
 def least_gap(channel: Channel) -> float:
-    """What a cause has to make of the channel's mean square, noise = 1, to be upheld (`twin.gap.upheld`).
+    """What a cause has to make of the channel's mean square, noise = 1, to be upheld (`twin.upheld.upheld`).
 
     One of the converter may reach the stem and show there for less; what it shows by the pressure alone is promised.
     """

@@ -118,7 +118,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     known.notes += [*itself.notes(case), *([gauge_note(case, result.denied)] if result.astray else [])]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
-    hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed)
+    hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed, itself.swing is not None)
     known.judgement = hearing.judgement(result)
     progress("held-out gap", 0.0)
     result, judgement, parts = hearing.held_out(result, known.judgement, progress, case.sigma_y)

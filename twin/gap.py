@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
-from dataclasses import dataclass, replace
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,32 +11,21 @@ from logs.recording import FloatArray
 from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.reform import lays_open
-from twin.choose.trim import doubtful
 from twin.closure import rms
-from twin.diagnosis import Verdict
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import make_space
 from twin.heldout import predict_heldout
-from twin.remainder import CLEAR, SLIGHT, leaves_too_much
 from twin.sensing import Sensing
 from twin.stages import StageResult
-from twin.verdict import Judgement, verdict_of
+from twin.verdict import Judgement
 
 Progress = Callable[[str, float], None]
 
 #: Candidates of the ranking whose own held-out gap is worth computing.
 _RANKED = 6
-#: Of the error before; a model that leaves more has explained nothing.
-NO_BETTER = 0.95
 #: Of the error after; a cause without which the error is smaller than that is not needed.
 IDLE = 1.03
-#: Of the noise; a design that misses by less has no gap.
-HARDLY = 1.1
-#: Of the noise; a design that misses by more has a gap, whatever explains it.
-DOUBTFUL = 1.6
-#: Of the noise; a pressure that is off by more has a cause, where one explains it to its noise.
-EXPLAINED = 2.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,94 +80,9 @@ def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, trave
     return min(spare, key=lambda name: parts.without[name])
 
 
-def upheld(
-    parts: GapParts,
-    judgement: Judgement,
-    floor: float,
-    sensing: Sensing,
-    apart: bool,
-    wandering: float = 1.0,
-    disturbed: bool = False,
-    exact: bool = False,
-    shown: Collection[str] = (),
-) -> tuple[GapParts, Judgement]:
-    """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
-
-    A cause is not named for an error below the noise, nor when the model with it predicts no better; nor is a design
-    without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
-    needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
-    `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
-    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see
-    `explained_to_noise`; `shown`: see `shown_by_pressure`.
-    """
-    before, after = rms(parts.before), rms(parts.after)
-    if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
-        return _unexplained(parts, judgement)
-    if not judgement.causes:
-        return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
-    if sensing.accepted:
-        return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
-    # what the pressure shows need not reach the stem, unless that is clearly off
-    told = before <= CLEAR * floor and all(c.name in shown for c in judgement.causes)
-    vain = (after > NO_BETTER * before and not told) or _doubted(judgement, exact)
-    # how much an unmeasured pressure wandered by itself nobody knows
-    hardly = HARDLY if apart else SLIGHT
-    if before <= hardly * floor or (vain and before < SLIGHT * floor):
-        if (left := _named_only(judgement, shown)).causes and not _doubted(left, exact):
-            return parts, left
-        verdict: Verdict = "unexplained" if disturbed else "no_gap"
-        return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
-    if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
-        return _unexplained(parts, judgement)
-    return parts, judgement
-
-
 def retuning_pays(parts: GapParts) -> bool:
     """Whether the re-tuned design predicts unseen data better than the design as given."""
     return rms(parts.retuned) < rms(parts.before)
-
-
-def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judgement]:
-    """No causes; what is left is the better of the design as given and the re-tuned one."""
-    after = parts.retuned if retuning_pays(parts) else parts.before
-    return replace(parts, after=after), Judgement("unexplained", (), judgement.ranking, ())
-
-
-def _doubted(judgement: Judgement, exact: bool) -> bool:
-    """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not.
-
-    `exact`: all is explained to its noise.
-    """
-    probability = {r.name: r.probability for r in judgement.ranking} | {c.name: c.probability for c in judgement.causes}
-    sets = judgement.confusable if exact else ()
-    return all(doubtful(c.name, probability, judgement.alike.get(c.name, ()), sets) for c in judgement.causes)
-
-
-def explained_to_noise(result: StageResult) -> bool:
-    """Whether what was accepted explains all of its signals to their noise."""
-    return all(d.exact for d in result.decisions if d.names)
-
-
-def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
-    """Causes of the converter for which the measured pressure speaks, whether or not they reach the stem.
-
-    A supply that gives too little for the last tenth of the range moves nothing where the stem is at its stop by then.
-    What is explained to its noise may be less than clear.
-    """
-    pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
-    return tuple(name for d in pressure if d.findings.none.mse > _shows(d) ** 2 * d.floor for name in d.names)
-
-
-def _shows(decision: Decision) -> float:
-    """Of the noise, by how much a pressure has to be off to show a cause by itself."""
-    return EXPLAINED if decision.exact else CLEAR
-
-
-def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:
-    """The judgement with those causes only that stand in `names`: there is no error for any other."""
-    causes = tuple(c for c in judgement.causes if c.name in names)
-    sets = tuple(s for s in judgement.confusable if s[0] in names)
-    return replace(judgement, verdict=verdict_of(causes), causes=causes, confusable=sets)
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
@@ -209,7 +113,7 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
         if name not in decision.names:
             fits[decision] = decision.accepted
         elif kept and (name.startswith("parameter:") or not smaller):
-            fits[decision] = _without(decision, name, case)
+            fits[decision] = fitted_without(decision, name, case)
         elif kept:
             fits[decision] = min(smaller, key=lambda f: f.mse)
         elif not kept:
@@ -217,7 +121,7 @@ def _left_out(case: Case, named: list[Decision], name: str) -> FloatArray:
     return _predicted(case, fits)
 
 
-def _without(decision: Decision, name: str, case: Case) -> Fit:
+def fitted_without(decision: Decision, name: str, case: Case) -> Fit:
     """The accepted causes less one of them; an accused number may not ride along either."""
     accepted = decision.accepted
     causes = [c for c in accepted.space.causes if c.name != name]

@@ -6,12 +6,14 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from twin.case import Case
+from twin.choose.decide import Decision
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, explained_to_noise, heldout_parts, idle_cause, shown_by_pressure, upheld
+from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause
 from twin.sensing import Sensing
 from twin.stages import StageResult
+from twin.upheld import explained_to_noise, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
@@ -27,6 +29,7 @@ class Hearing:
     ep_share: float
     weights: Weights
     disturbed: bool
+    swings: bool = False
 
     def judgement(self, result: StageResult) -> Judgement:
         """The verdict on a result."""
@@ -56,14 +59,19 @@ class Hearing:
     ) -> tuple[StageResult, Judgement, GapParts]:
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         while idle := idle_cause(parts, judgement, result, self.case.travel):
-            decisions = tuple(dropped(d, idle) if idle in d.names else d for d in result.decisions)
-            if any(d is None for d in decisions):
-                break
-            left = tuple(d for d in decisions if d is not None)
+            left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
             result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
             judgement = self.judgement(result)
             parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, judgement, parts
+
+    def _dropped(self, decision: Decision, name: str) -> Decision:
+        """The decision without a cause; the others are fitted without it where they never were."""
+        if (smaller := dropped(decision, name)) is not None:
+            return smaller
+        others = fitted_without(decision, name, self.case)
+        findings = replace(decision.findings, fits=(*decision.findings.fits, others))
+        return replace(decision, findings=findings, accepted=others, rest=decision.rest_of(others))
 
     def _upheld(
         self, result: StageResult, judgement: Judgement, parts: GapParts, floor: float
@@ -71,4 +79,4 @@ class Hearing:
         """`upheld`, with what the result says of the channels."""
         measured, wandering = self.case.sigma_p is not None, result.decisions[-1].floor
         told = (measured, wandering, self.disturbed, explained_to_noise(result), shown_by_pressure(result))
-        return upheld(parts, judgement, floor, self.sensing, *told)
+        return upheld(parts, judgement, floor, self.sensing, *told, self.swings)

@@ -30,7 +30,7 @@ def leaves_too_much(
 ) -> bool:
     """Whether the causes leave too much of the gap; errors [any unit] before and after, and the noise under them.
 
-    `apart`, `exact`, `shown`: as in `twin.gap.upheld`.
+    `apart`, `exact`, `shown`: as in `twin.upheld.upheld`.
     """
     left, gap = after**2 - floor**2, before**2 - floor**2
     if before <= CLEAR * floor:

@@ -10,9 +10,10 @@ import pytest
 
 from twin.diagnosis import Cause as Named
 from twin.diagnosis import Diagnosis, Gap, Share
-from twin.gap import GapParts, shown_by_pressure, upheld
+from twin.gap import GapParts
 from twin.sensing import Sensing
 from twin.statement import statement
+from twin.upheld import shown_by_pressure, upheld
 from twin.verdict import Judgement
 
 CREEP = Named("creep", "actuator", 0.9, None, {})

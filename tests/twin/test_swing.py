@@ -10,8 +10,13 @@ import pytest
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.diagnose import diagnose
+from twin.diagnosis import Cause
+from twin.gap import GapParts
 from twin.plant import Plant
+from twin.sensing import Sensing
 from twin.swing import swing_of
+from twin.upheld import upheld
+from twin.verdict import Judgement
 
 
 @pytest.mark.parametrize(("frequency_hz", "amplitude"), [(1.37, 0.003), (4.21, 0.002)])
@@ -98,3 +103,16 @@ def test_a_healthy_valve_with_interference_is_unexplained_and_the_operator_told_
     assert isinstance(swings, dict) and swings["frequency_hz"] == pytest.approx(1.37, abs=1e-3)
     assert any("swings by itself" in note.what for note in outcome.diagnosis.data_quality)
     assert diagnose([recording], DESIGN, (), UP_TO_TWO).diagnosis.verdict == "no_gap"
+
+
+@pytest.mark.parametrize(
+    ("swings", "exact", "verdict"), [(True, False, "unexplained"), (True, True, "effect"), (False, False, "effect")]
+)
+def test_beside_what_swings_by_itself_only_what_leaves_nothing_is_believed(
+    swings: bool, exact: bool, verdict: str
+) -> None:
+    """A pilot that hunts shakes the stem through its friction: the deadband looks smaller, and creep was named."""
+    levels = GapParts(*(np.full(8, level) for level in (8.0, 1.7, 1.7)), {}, {})
+    creep = Judgement("effect", (Cause("creep", "actuator", 0.9, None, {}),), (), ())
+    told = (True, 1.0, swings, exact, (), swings)
+    assert upheld(levels, creep, 1.0, Sensing((), {}, 0.0), *told)[1].verdict == verdict

@@ -17,9 +17,10 @@ from twin.effect import Scales
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
-from twin.gap import GapParts, upheld
+from twin.gap import GapParts
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
+from twin.upheld import upheld
 from twin.verdict import FORM_ERROR, Judgement, estimates
 
 NAMED = Judgement("effect", (Named("creep", "actuator", 0.9, None, {}),), (), (("creep", "stiction"),))
@@ -86,9 +87,8 @@ def test_a_design_that_misses_by_more_than_the_noise_has_a_gap(before: float, ve
 def test_a_retuned_design_that_predicts_worse_is_not_handed_out(retuned: float, left: float) -> None:
     nothing = Judgement("unexplained", (), (), ())
     for found in (nothing, NAMED):
-        kept, judgement = upheld(
-            parts(3.0, retuned, 2.9 if found is NAMED else retuned), found, 1.0, NOTHING_SEEN, True
-        )
+        after = 2.9 if found is NAMED else retuned
+        kept, judgement = upheld(parts(3.0, retuned, after), found, 1.0, NOTHING_SEEN, True)
         assert judgement.verdict == "unexplained"
         assert kept.after[0] == left and kept.retuned[0] == retuned
 

@@ -25,7 +25,8 @@ def bent_by(one: Fit) -> float:
 
 
 def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
-    """A hypothesis with a law for a curve that each recording has of its own, and with one effect that this hides.
+    """A hypothesis with one effect that a curve hides which each recording has of its own, with a law for that curve,
+    and in its place.
 
     `causes`: all candidates in all forms.
     """
@@ -34,7 +35,7 @@ def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
         rest = [c for c in one.space.causes if c is not curve]
         laws = [c for c in causes if c.name == curve.name and c.form and not (c.form.apart or c.form.outside)]
         hidden = [c for c in causes if c.name in hides and c.name not in one.names]
-        found += [(*rest, law, other) for law in laws for other in hidden]
+        found += [(*rest, *law, other) for law in ((), *((law,) for law in laws)) for other in hidden]
     return found
 
 

@@ -1,0 +1,112 @@
+"""Whether a judgement stands on data that no fit has seen."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+
+from twin.choose.decide import Decision
+from twin.choose.trim import doubtful
+from twin.closure import rms
+from twin.diagnosis import Verdict
+from twin.gap import GapParts, retuning_pays
+from twin.remainder import CLEAR, SLIGHT, leaves_too_much
+from twin.sensing import Sensing
+from twin.stages import StageResult
+from twin.verdict import Judgement, verdict_of
+
+#: Of the error before; a model that leaves more has explained nothing.
+NO_BETTER = 0.95
+#: Of the noise; a design that misses by less has no gap.
+HARDLY = 1.1
+#: Of the noise; a design that misses by more has a gap, whatever explains it.
+DOUBTFUL = 1.6
+#: Of the noise; a pressure that is off by more has a cause, where one explains it to its noise.
+EXPLAINED = 2.0
+
+
+def upheld(
+    parts: GapParts,
+    judgement: Judgement,
+    floor: float,
+    sensing: Sensing,
+    apart: bool,
+    wandering: float = 1.0,
+    disturbed: bool = False,
+    exact: bool = False,
+    shown: Collection[str] = (),
+    swings: bool = False,
+) -> tuple[GapParts, Judgement]:
+    """The judgement, taken back where data that no fit has seen speak against it; with the errors that go with it.
+
+    A cause is not named for an error below the noise, nor when the model with it predicts no better; nor is a design
+    without a gap that misses by far more than the noise. What the readings themselves showed (false, held, coarse ones)
+    needs no prediction. `apart`: the pressure was measured, so that a cause before it has a signal of its own.
+    `wandering`: mean square, noise = 1, that the true model leaves because nobody knows the driving pressure exactly; a
+    prediction from the command leaves it too. `disturbed`: there is a gap, whatever causes it; `exact`: see
+    `explained_to_noise`; `shown`: see `shown_by_pressure`; `swings`: a signal swings by itself, which shakes the stem
+    through its friction or hides how it does, so that only a cause that leaves nothing else is believed.
+    """
+    before, after = rms(parts.before), rms(parts.after)
+    if judgement.verdict == "no_gap" and before > DOUBTFUL * floor:
+        return _unexplained(parts, judgement)
+    if not judgement.causes:
+        return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
+    if sensing.accepted:
+        return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
+    # what the pressure shows need not reach the stem, unless that is clearly off
+    told = before <= CLEAR * floor and all(c.name in shown for c in judgement.causes)
+    vain = (after > NO_BETTER * before and not told) or (swings and not exact) or _doubted(judgement, exact)
+    # how much an unmeasured pressure wandered by itself nobody knows
+    hardly = HARDLY if apart else SLIGHT
+    if before <= hardly * floor or (vain and before < SLIGHT * floor):
+        if (left := _named_only(judgement, shown)).causes and not _doubted(left, exact):
+            return parts, left
+        verdict: Verdict = "unexplained" if disturbed else "no_gap"
+        return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())
+    if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
+        return _unexplained(parts, judgement)
+    return parts, judgement
+
+
+def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judgement]:
+    """No causes; what is left is the better of the design as given and the re-tuned one."""
+    after = parts.retuned if retuning_pays(parts) else parts.before
+    return replace(parts, after=after), Judgement("unexplained", (), judgement.ranking, ())
+
+
+def _doubted(judgement: Judgement, exact: bool) -> bool:
+    """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not.
+
+    `exact`: all is explained to its noise.
+    """
+    probability = {r.name: r.probability for r in judgement.ranking} | {c.name: c.probability for c in judgement.causes}
+    sets = judgement.confusable if exact else ()
+    return all(doubtful(c.name, probability, judgement.alike.get(c.name, ()), sets) for c in judgement.causes)
+
+
+def explained_to_noise(result: StageResult) -> bool:
+    """Whether what was accepted explains all of its signals to their noise."""
+    return all(d.exact for d in result.decisions if d.names)
+
+
+def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
+    """Causes of the converter for which the measured pressure speaks, whether or not they reach the stem.
+
+    A supply that gives too little for the last tenth of the range moves nothing where the stem is at its stop by then.
+    What is explained to its noise may be less than clear.
+    """
+    pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
+    return tuple(name for d in pressure if d.findings.none.mse > _shows(d) ** 2 * d.floor for name in d.names)
+
+
+def _shows(decision: Decision) -> float:
+    """Of the noise, by how much a pressure has to be off to show a cause by itself."""
+    return EXPLAINED if decision.exact else CLEAR
+
+
+def _named_only(judgement: Judgement, names: Collection[str]) -> Judgement:
+    """The judgement with those causes only that stand in `names`: there is no error for any other."""
+    causes = tuple(c for c in judgement.causes if c.name in names)
+    sets = tuple(s for s in judgement.confusable if s[0] in names)
+    return replace(judgement, verdict=verdict_of(causes), causes=causes, confusable=sets)
