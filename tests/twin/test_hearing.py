@@ -11,14 +11,24 @@ import pytest
 import twin.hearing
 from control.design import DesignModel
 from logs.recording import Recording
+from tests.twin.judged import a_record
 from tests.twin.test_floor import RULES, findings_of
 from twin.case import make_case
+from twin.catalog import effect
 from twin.choose.decide import Decision, decide
+from twin.choose.findings import Findings
+from twin.choose.score import make_yardstick
 from twin.choose.weigh import Weights
+from twin.fit.channel import chain_channel
+from twin.fit.fitting import fit, starts_of
+from twin.fit.space import Cause, make_space
 from twin.gap import GapParts
 from twin.hearing import Hearing
+from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
 from twin.stages import StageResult
+
+DESIGN = DesignModel()
 
 
 def accepted(channel: str, name: str, before: float) -> Decision:
@@ -39,7 +49,7 @@ def test_a_guess_about_the_stem_is_left_out_alone(
     monkeypatch: pytest.MonkeyPatch, shown: float, before: float, verdict: str, names: list[str]
 ) -> None:
     record = Recording("r", 0.1 * np.arange(400), np.full(400, 9.0), np.full(400, 0.3), np.full(400, 9.0))
-    case = make_case([record], DesignModel())
+    case = make_case([record], DESIGN)
     decisions = (accepted("pressure", "supply_saturation", shown), accepted("position", "creep", 3.0))
 
     def heldout_parts(case: Any, result: StageResult, *rest: Any) -> GapParts:
@@ -55,3 +65,23 @@ def test_a_guess_about_the_stem_is_left_out_alone(
     assert [c.name for c in judgement.causes] == names
     assert bool(result.decisions[1].names) == (not names)
     assert parts.before[0] == before * case.sigma_y
+
+
+def test_a_cause_goes_also_where_the_others_were_never_fitted_without_it() -> None:
+    creep = effect("creep").form("one_tail")
+    case = make_case([a_record(Plant(DESIGN, (Inserted("creep", creep, (0.1, 20.0)),)))], DESIGN)
+    channel = chain_channel(case.trials, case.sigma_y)
+    drift = Cause("lvdt_drift", effect("lvdt_drift"), effect("lvdt_drift").form("linear"))
+    none, both = (
+        fit(channel, space, starts_of(space))
+        for space in (
+            make_space(case.base, causes, channel.numbers if causes else (), case.scales)
+            for causes in ((), (Cause("creep", effect("creep"), creep), drift))
+        )
+    )
+    findings = Findings(channel, none, none, (both,), make_yardstick(none.residuals, channel.use))
+    hearing = Hearing(case, none, Sensing((), {}, 0.0), 0.0, Weights(), False)
+    left = hearing._dropped(Decision(findings, both, True, True, 0.0), "lvdt_drift")
+    assert left.names == ("creep",)
+    assert left.accepted.mse == pytest.approx(both.mse, rel=0.01)
+    assert left.accepted in left.findings.fits
