@@ -19,6 +19,7 @@ from twin.choose.decide import Decision, decide
 from twin.choose.findings import Findings
 from twin.choose.score import make_yardstick
 from twin.choose.weigh import Weights
+from twin.diagnosis import Cause as Named
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
@@ -27,6 +28,8 @@ from twin.hearing import Hearing
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
 from twin.stages import StageResult
+from twin.upheld import upheld
+from twin.verdict import Judgement
 
 DESIGN = DesignModel()
 
@@ -85,3 +88,20 @@ def test_a_cause_goes_also_where_the_others_were_never_fitted_without_it() -> No
     assert left.names == ("creep",)
     assert left.accepted.mse == pytest.approx(both.mse, rel=0.01)
     assert left.accepted in left.findings.fits
+
+
+@pytest.mark.parametrize(
+    ("name", "after", "exact", "verdict"),
+    [
+        ("creep", 1.01, True, "effect"),
+        ("creep", 1.05, True, "no_gap"),  # too much is left of so little
+        ("creep", 1.01, False, "no_gap"),
+        ("lvdt_drift", 1.01, True, "no_gap"),  # a pressure that wandered looks like this
+    ],
+)
+def test_a_slight_error_without_a_measured_pressure_has_a_cause_if_a_law_of_the_commands_predicts_it(
+    name: str, after: float, exact: bool, verdict: str
+) -> None:
+    levels = GapParts(*(np.full(8, level) for level in (1.2, 1.2, after)), {}, {})
+    named = Judgement("effect", (Named(name, effect(name).stage, 0.9, None, {}),), (), ())
+    assert upheld(levels, named, 1.0, Sensing((), {}, 0.0), False, exact=exact)[1].verdict == verdict
