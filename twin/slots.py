@@ -50,7 +50,8 @@ EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port or a sh
 EP_DRIFTS = 33  # by how much the zero moves in the end [pressure]
 EP_DRIFTS_S = 34  # and with which time constant, from the beginning of each recording [s]
 EP_STROKE = 35  # what a stroke of the stem takes from the pressure until air has come after it [pressure/position]
-EP_COUNT = 36
+EP_SUBSONIC = 36  # choked flow from a supply of EP_CLIP over what the lag takes [-]; 0: any flow
+EP_COUNT = 37
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

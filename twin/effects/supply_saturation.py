@@ -4,8 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from logs.units import atmosphere
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_CLIP, EP_DRAW, EP_KNEE, EP_REFILL_S, EP_SUPPLY, EP_TANK
+from twin.slots import (
+    EP_AMBIENT,
+    EP_ATMOSPHERE,
+    EP_CLIP,
+    EP_DRAW,
+    EP_KNEE,
+    EP_REFILL_S,
+    EP_SUBSONIC,
+    EP_SUPPLY,
+    EP_TANK,
+)
 
 _SUPPLY = Parameter(
     name="supply",
@@ -36,6 +47,22 @@ def _clip(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_CLIP] = values[0]
 
 
+def _subsonic(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_ATMOSPHERE, EP_AMBIENT]] = atmosphere(c.design.pressure_unit)
+    c.ep[[EP_CLIP, EP_SUBSONIC]] = values
+
+
+_WIDTH = Parameter(
+    name="width",
+    kind="fraction",
+    lower=1.0,
+    upper=6.0,
+    starts=(1.1, 1.6),
+    scale=0.5,
+    doc="choked flow through the port over what the lag takes",
+    neutral=1.0,
+    size=False,
+)
 _DRAW = Parameter(
     name="draw",
     kind="fraction",
@@ -74,6 +101,7 @@ EFFECT = Effect(
     claim="Pressure cannot exceed what the air supply gives.",
     equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply, "
     "and through a booster only what ISO 6358 lets flow from that supply; "
+    "subsonic: where it rises, dp/dt = (u - p) / tau min(1, width flow(p, supply)), flow over choked flow (ISO 6358); "
     "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction); "
     "soft: dp/dt = (v - p) / tau, v = -knee ln(exp(-u / knee) + exp(-supply / knee)) (a regulator that runs out of "
     "pressure difference little by little)",
@@ -82,6 +110,7 @@ EFFECT = Effect(
     forms=(
         Form("ceiling", (_SUPPLY,), _apply),
         Form("cut_off", (_SUPPLY,), _clip),
+        Form("subsonic", (_SUPPLY, _WIDTH), _subsonic),
         Form("soft", (_SUPPLY, _KNEE), _soft),
         Form("sinking", (_SUPPLY, _DRAW, _REFILL), _sinks),
     ),

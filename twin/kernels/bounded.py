@@ -6,7 +6,10 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.booster import inflow
 from twin.slots import (
+    EP_AMBIENT,
+    EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
@@ -17,6 +20,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
+    EP_SUBSONIC,
     EP_TANK,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
@@ -43,12 +47,29 @@ def _edged_step(error: float, edge: float, within: float, beyond: float, h: floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _let_through(p: float, v: float, steps: float, c: FloatArray) -> float:
+    """Share of the lag's flow that a weak supply gives, on the mean over a step; it is `steps` lags long without it."""
+    absolute, clip = c[EP_ATMOSPHERE] - c[EP_AMBIENT], c[EP_CLIP]
+    first = min(1.0, c[EP_SUBSONIC] * inflow(p + absolute, clip + absolute))
+    share: float = first
+    for _ in range(3):
+        middle = min(clip, v - (v - p) * np.exp(-0.5 * steps * share))
+        end = min(clip, v - (v - p) * np.exp(-steps * share))
+        half_on = min(1.0, c[EP_SUBSONIC] * inflow(middle + absolute, clip + absolute))
+        at_end = min(1.0, c[EP_SUBSONIC] * inflow(end + absolute, clip + absolute))
+        share = (first + 4.0 * half_on + at_end) / 6.0
+    return share
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     """Pressure after `h` seconds of a lag toward `v`, with an overlap band or a quick exhaust, and slope limits."""
     mode, error = c[EP_BAND_MODE], abs(v - p)
     if mode == 4.0 and error <= c[EP_BAND]:
         return p
     rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
+    if v > p and c[EP_SUBSONIC] > 0.0:
+        rate *= _let_through(p, v, h * rate, c)
     if mode == 3.0:
         error = _edged_step(error, c[EP_BAND], c[EP_LEAK] * rate, rate, h)
     elif v < p and c[EP_QUICK] > 0.0:
