@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
+from control.design import DesignModel
+from tests.twin.test_floor import findings_of
 from twin.catalog import effect
-from twin.choose.decide import _fewer_unknowns, _worth
+from twin.choose.decide import _fewer_unknowns, _worth, decide
 from twin.choose.rules import DecisionRules
-from twin.fit.space import Cause
+from twin.effect import Scales
+from twin.fit.space import Cause, make_space
+from twin.plant import Plant
 
 NAMES = ("creep", "spring_asymmetry", "stiction")
 
@@ -137,3 +142,26 @@ def test_a_zero_error_and_a_drift_go_before_zeros_of_each_recordings_own() -> No
     assert chosen(one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 8, 1.1)) is zeros
     assert chosen(one({"lvdt_drift": "linear", "creep": "one_tail"}, 9, 0.989)) is zeros
     assert chosen(one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 12, 0.989)) is zeros
+
+
+@pytest.mark.parametrize(
+    ("deviations", "left", "accused", "explained"),
+    [
+        (6.0, 2.3, False, False),  # a deadband 6 % off, which nobody accuses, and more than the noise is left
+        (6.0, 1.05, False, True),
+        (4.0, 2.3, False, True),
+        (6.0, 2.3, True, True),
+    ],
+)
+def test_what_bends_the_numbers_far_and_leaves_something_imitates(
+    deviations: float, left: float, accused: bool, explained: bool
+) -> None:
+    """A pilot that hunts shakes the stem: the deadband looks smaller, and a creep did the rest."""
+    findings = findings_of({("creep",): (left, 1000.0)}, 68.0)
+    causes = (*findings.fits[0].space.causes, *([Cause("parameter:deadband")] if accused else []))
+    space = make_space(Plant(DesignModel()), causes, ("deadband",), Scales())
+    z = np.full(len(space.unknowns), 0.5)
+    z[0] = deviations * (0.01 * DesignModel().deadband / space.unknowns[0].unit)
+    bent = replace(findings.fits[0], space=space, z=z, normal=1e9 * np.eye(z.size))
+    scores: Any = SimpleNamespace(phi=1.0, score=lambda one: 1000.0 if one is bent else -1e6)
+    assert decide(replace(findings, fits=(bent,), yardstick=scores), DecisionRules()).explained is explained

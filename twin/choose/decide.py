@@ -81,7 +81,9 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
-    explained = size > 0 and (rest < rules.unexplained or nothing_left)
+    # what imitates must bend the numbers, and leaves something all the same
+    imitates = bent_by(accepted) > rules.believed and accepted.mse > _EXACT * floor
+    explained = size > 0 and (rest < rules.unexplained or nothing_left) and not imitates
     gap = explained or findings.none.mse > rules.quiet * floor
     return Decision(findings, accepted, explained, gap, rest, floor)
 

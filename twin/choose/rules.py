@@ -11,6 +11,8 @@ class DecisionRules:
 
     Gains are in units of the noise variance: 1 means as large as the noise itself. `gain` is raised to what a healthy
     machine leaves, where that is known; `further` is what a cause beside others has to gain where they leave more.
+    `believed`: how far (squares of their priors' deviations) design numbers nobody accuses may have moved, where more
+    than the noise is left.
     `share` of the gap is what a further cause has to explain, or, if it explains nearly all of the rest, `trifle`.
     """
 
@@ -25,6 +27,7 @@ class DecisionRules:
     large_share: float = 0.2
     unexplained: float = 0.2
     nothing_left: float = 1.15
+    believed: float = 30.0
     plain: float = 0.05
     plain_share: float = 0.005
     quiet: float = 2.0
