@@ -30,6 +30,7 @@ from hal.errors import BadInput
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
 _LIMIT_S = 900.0
 _DIGITAL = ("sensor_quantization", "stale_samples", "sensor_dropouts")
+_HALF_A_STEP = (("sensor_quantization", "step"), ("lvdt_calibration", "zero"))
 _ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
@@ -79,8 +80,13 @@ def _unseen(folder: Path, out: Path, case: str) -> dict[str, float] | None:
 
 
 def _analogue(model: DesignModel) -> DesignModel:
-    """The model without what makes a reading digital, which the readings that it is compared with are without, too."""
-    return replace(model, effects={name: table for name, table in model.effects.items() if name not in _DIGITAL})
+    """The model without what makes a reading digital, which the readings that it is compared with are without, too.
+
+    A display that cuts off its digits reads low by half a step, which is in the model as a zero of exactly that.
+    """
+    step, zero = (float(model.effects.get(n, {}).get(k, 0.0)) for n, k in _HALF_A_STEP)
+    without = {*_DIGITAL, *({"lvdt_calibration"} if step and np.isclose(zero, -0.5 * step, rtol=1e-6) else ())}
+    return replace(model, effects={name: table for name, table in model.effects.items() if name not in without})
 
 
 def _miss_in(model: Path, record: Path, reading_in: NDArray[np.float64], out: Path) -> float:

@@ -158,6 +158,15 @@ def test_an_analogue_reading_is_compared_with_a_model_without_what_is_digital(tm
     assert found is not None and found["after_in"] > found["before_in"] + 0.001  # what is not digital stays
 
 
+@pytest.mark.parametrize(("zero", "kept"), [(-0.025, False), (-0.02, True), (0.025, True)])
+def test_a_display_that_cuts_off_takes_its_half_step_along(zero: float, kept: bool) -> None:
+    rounding, low = {"form": "uniform_steps", "step": 0.05}, {"form": "zero", "zero": zero}
+    model = replace(DesignModel(), effects={"lvdt_calibration": low, "sensor_quantization": rounding})
+    assert exam._analogue(model).effects == ({"lvdt_calibration": low} if kept else {})
+    alone = replace(DesignModel(), effects={"lvdt_calibration": low})
+    assert exam._analogue(alone).effects == {"lvdt_calibration": low}
+
+
 @pytest.mark.thorough
 def test_an_unseen_record_that_cannot_be_simulated_is_told_and_has_no_closure(tmp_path: Path, capsys) -> None:
     out = tmp_path / "answers"
