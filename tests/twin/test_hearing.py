@@ -34,8 +34,8 @@ from twin.verdict import Judgement
 DESIGN = DesignModel()
 
 
-def accepted(channel: str, name: str, before: float) -> Decision:
-    findings = findings_of({(name,): (1.0, 1000.0)}, before)
+def accepted(channel: str, name: str, before: float, left: float = 1.0) -> Decision:
+    findings = findings_of({(name,): (left, 1000.0)}, before)
     findings.channel.name, findings.channel.half, findings.channel.trials = channel, 0.0, ()
     return replace(decide(findings, RULES), accepted=findings.fits[0], explained=True, rest=0.0)
 
@@ -68,6 +68,23 @@ def test_a_guess_about_the_stem_is_left_out_alone(
     assert [c.name for c in judgement.causes] == names
     assert bool(result.decisions[1].names) == (not names)
     assert parts.before[0] == before * case.sigma_y
+
+
+@pytest.mark.parametrize(
+    ("swings", "left", "verdict"), [(True, 2.3, "unexplained"), (True, 1.0, "effect"), (False, 2.3, "effect")]
+)
+def test_a_creep_that_leaves_something_beside_a_swing_is_taken_back(
+    monkeypatch: pytest.MonkeyPatch, swings: bool, left: float, verdict: str
+) -> None:
+    record = Recording("r", 0.1 * np.arange(400), np.full(400, 9.0), np.full(400, 0.3), np.full(400, 9.0))
+    case = make_case([record], DESIGN)
+    levels = GapParts(*(case.sigma_y * np.full(8, level) for level in (8.0, 1.7, 1.7)), {}, {})
+    monkeypatch.setattr(twin.hearing, "heldout_parts", lambda *_: levels)
+    decision = accepted("position", "creep", 68.0, left)
+    hearing = Hearing(case, decision.findings.none, Sensing((), {}, 0.0), 0.0, Weights(), swings, swings)
+    result = StageResult(case, (decision,), case.trials)
+    told = hearing.held_out(result, hearing.judgement(result), lambda *_: None, case.sigma_y)[1]
+    assert told.verdict == verdict
 
 
 def test_a_cause_goes_also_where_the_others_were_never_fitted_without_it() -> None:
