@@ -26,6 +26,7 @@ from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, retuning_pays
 from twin.hearing import Hearing
+from twin.heldout import tied_note
 from twin.lateness import late_commands
 from twin.next.propose import propose
 from twin.noise.copies import used_once
@@ -124,6 +125,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     result, judgement, parts = hearing.held_out(result, known.judgement, progress, case.sigma_y)
     everything = replace(everything, decisions=result.decisions)
     known.judgement = judgement
+    known.notes += tied_note([c.name for c in judgement.causes])
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

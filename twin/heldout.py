@@ -1,7 +1,9 @@
-"""The gap on data that no fit has seen: blocks of the record take turns in being held out.
+"""The gap on held-out data: blocks of the record take turns in being left out of the fit that predicts them.
 
-Blocks are long against the valve's lags and alternate, so that both halves see all conditions of the excitation, but
-no row is ever predicted by a fit that used it. Everything is predicted from the command alone: the whole chain.
+Blocks are long against the valve's lags and alternate, so that both halves see all conditions of the excitation. Each
+fit begins where that of the whole record ended and is tied to it: loosely, so that what its rows say outweighs the tie,
+but firmly where a cause is erratic, which leaves the prediction less blind and is said in the answer. Everything is
+predicted from the command alone: the whole chain.
 """
 
 from __future__ import annotations
@@ -11,8 +13,9 @@ from collections.abc import Sequence
 import numpy as np
 import numpy.typing as npt
 
-from logs.recording import FloatArray
+from logs.recording import DataNote, FloatArray
 from twin.case import Case
+from twin.catalog import effects
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit
 from twin.plant import Plant
@@ -62,7 +65,8 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
     """The same hypotheses fitted again, from where they ended, on the rows with weight only.
 
     A supply that is met in a single block cannot be learned from the others; that is no evidence against it. So every
-    unknown is tied to where it ended, but so loosely that whatever these rows do say about it outweighs the tie.
+    unknown is tied to where it ended, but so loosely that whatever these rows do say about it outweighs the tie; not so
+    where a cause is erratic (see `_FIRM`).
     """
     return [
         fit(channel, one.space, [one.z], rounds=rounds, weights=weights, anchor=_tie(one))
@@ -73,8 +77,24 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
 def _tie(one: Fit) -> tuple[FloatArray, FloatArray]:
     units = np.abs([u.unit for u in one.space.unknowns])
     deviations = one.deviations(max(one.mse, 1.0) ** 0.5) / units
-    erratic = any(cause.effect is not None and cause.effect.erratic for cause in one.space.causes)
-    return one.z, np.maximum((_FIRM if erratic else _LOOSE) * deviations, 1e-6)
+    return one.z, np.maximum((_FIRM if _erratic(one.names) else _LOOSE) * deviations, 1e-6)
+
+
+def _erratic(names: Sequence[str]) -> list[str]:
+    known = effects()
+    return [name for name in names if name in known and known[name].erratic]
+
+
+def tied_note(names: Sequence[str]) -> list[DataNote]:
+    """What to say of the held-out error, where one of the named causes is erratic."""
+    erratic = " and ".join(_erratic(names))
+    if not erratic:
+        return []
+    handled = (
+        f"for data held out, all numbers were tied to those of the whole record, by {_FIRM:g} of their standard "
+        "deviations: the error on held-out data is less blind than with other causes"
+    )
+    return [DataNote(f"with {erratic}, one slip that comes early outweighs many rows", handled)]
 
 
 def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:

@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 
 from control.design import DesignModel
+from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.case import Case, make_case
 from twin.catalog import effect
+from twin.choose.search import SearchRules
+from twin.diagnose import Settings, diagnose
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
@@ -18,10 +21,14 @@ from twin.plant import Inserted, Plant
 DESIGN = DesignModel()
 
 
+def recorded(name: str, form: str, values: tuple[float, ...]) -> Recording:
+    return a_record(Plant(DESIGN, (Inserted(name, effect(name).form(form), values),)))
+
+
 def fitted(name: str, form: str, values: tuple[float, ...]) -> tuple[Case, Channel, Fit]:
     """A cause and the numbers of the design, from where they are true."""
     one = effect(name)
-    case = make_case([a_record(Plant(DESIGN, (Inserted(name, one.form(form), values),)))], DESIGN)
+    case = make_case([recorded(name, form, values)], DESIGN)
     channel = chain_channel(case.trials, case.sigma_y)
     numbers = ["deadband", "offset", "compliance", "tau", "rate_limit"]
     space = make_space(Plant(DESIGN), [Cause(name, one, one.form(form))], numbers, case.scales)
@@ -43,3 +50,16 @@ def test_half_of_the_rows_hardly_bend_the_numbers_of_what_sticks(
     again = [refitted([found], [channel], weights)[0] for weights in fold_weights(case)]
     bent = max(float(np.max(np.abs(a.values() - found.values()) / deviations)) for a in again)
     assert (bent < 0.75) is stays
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("name", "form", "values", "said"),
+    [("stiction", "target_sticks", (0.1, 0.0035), True), ("creep", "one_tail", (0.15, 8.0), False)],
+)
+def test_the_answer_says_that_the_held_out_error_is_less_blind(
+    name: str, form: str, values: tuple[float, ...], said: bool
+) -> None:
+    found = diagnose([recorded(name, form, values)], DESIGN, settings=Settings(search=SearchRules(most=1))).diagnosis
+    assert [c.name for c in found.causes] == [name]
+    assert any("less blind" in note.handled for note in found.data_quality) is said

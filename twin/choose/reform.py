@@ -35,7 +35,8 @@ def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
         rest = [c for c in one.space.causes if c is not curve]
         laws = [c for c in causes if c.name == curve.name and c.form and not (c.form.apart or c.form.outside)]
         hidden = [c for c in causes if c.name in hides and c.name not in one.names]
-        found += [(*rest, *law, other) for law in ((), *((law,) for law in laws)) for other in hidden]
+        found += [(*rest, other) for other in hidden]
+        found += [(*rest, law, other) for law in laws for other in hidden]
     return found
 
 
