@@ -9,6 +9,7 @@ predicted from the command alone: the whole chain.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import numpy.typing as npt
@@ -115,8 +116,12 @@ def predict_folds(
     whole = case.everything
     chain = chain_channel(whole.trials, whole.sigma_y)
     error = np.full(chain.measured.size, np.nan)
-    for fold, fitted_on in enumerate(weights):
-        plant = combined(base, refitted(fits, channels, fitted_on)) if fits else base
-        held = (folds == fold) & chain.use
-        error[held] = (chain.measured - chain.prediction(plant))[held]
+
+    def predicted(fitted_on: FloatArray) -> FloatArray:
+        return chain.prediction(combined(base, refitted(fits, channels, fitted_on)) if fits else base)
+
+    with ThreadPoolExecutor(FOLDS) as pool:
+        for fold, reading in enumerate(pool.map(predicted, weights)):
+            held = (folds == fold) & chain.use
+            error[held] = (chain.measured - reading)[held]
     return error

@@ -15,7 +15,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record, judged
 from twin.catalog import effects
-from twin.choose.score import make_yardstick, student_log_likelihood, whitening_filter
+from twin.choose.score import inflation, make_yardstick, student_log_likelihood, whitening_filter
 from twin.choose.weigh import Weights, weigh
 from twin.effect import Effect
 from twin.explain import typical_values
@@ -115,6 +115,19 @@ def test_whitening_takes_the_memory_out() -> None:
     yardstick = make_yardstick(memory, np.ones(memory.size, dtype=bool))
     assert yardstick.phi > 10.0
     assert yardstick.white_phi < 1.2
+
+
+def test_the_autocorrelation_does_not_wrap_around() -> None:
+    """A residual that is slow at its ends, and as a circle would go on."""
+    residuals = np.random.default_rng(0).normal(size=1009)  # a prime: rounded up for the transform
+    residuals[:100] += 3.0
+    residuals[-100:] += 3.0
+    r = residuals - residuals.mean()
+    acf = np.correlate(r, r, "full")[r.size - 1 :][: r.size // 8] / (r @ r)
+    pairs = acf[1::2][: acf.size // 2 - 1] + acf[2::2][: acf.size // 2 - 1]
+    last = int(np.argmax(pairs <= 0.0)) if (pairs <= 0.0).any() else pairs.size
+    expected = np.clip(1.0 + 2.0 * np.sum(pairs[:last]), 1.0, r.size / 16.0)
+    assert inflation(residuals, np.ones(r.size, dtype=bool)) == pytest.approx(expected, rel=1e-9)
 
 
 def test_student_likelihood_forgives_a_few_outliers() -> None:

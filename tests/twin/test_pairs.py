@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -49,8 +48,7 @@ def test_the_pair_that_is_there_is_among_the_first_and_alone_fits() -> None:
         cause("asymmetric_damping", "two_lags"),
         cause("creep", "one_tail"),
     ]
-    with ThreadPoolExecutor(1) as pool:
-        found = promising_pairs(screen, causes, [], together, pool)
+    found = promising_pairs(screen, causes, [], together)
     assert len(found) == 10
     fits = [fit(channel, pair.space, [pair.start]) for pair in found[:3]]
     assert [set(f.names) for f in fits if f.mse < 1.2] == [{"lvdt_nonlinearity", "friction_drift"}]

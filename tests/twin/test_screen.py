@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from concurrent.futures import ThreadPoolExecutor
-
 import numpy as np
 
 from control.design import DesignModel
@@ -42,8 +40,7 @@ def test_the_missing_cause_comes_first() -> None:
         cause("sensor_lag", "first_order"),
     ]
     screen = make_screen(channel, base, parent)
-    with ThreadPoolExecutor(1) as pool:
-        found = prospects(screen, [(known, rival) for rival in rivals], [], pool)
+    found = prospects(screen, [(known, rival) for rival in rivals], [])
     assert found[0].causes[-1].name == "lvdt_nonlinearity"
     full = fit(channel, found[0].space, [found[0].start])
     assert full.mse < 1.2

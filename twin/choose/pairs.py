@@ -10,7 +10,6 @@ Source: the score (gradient) test, Rao, Proc. Cambridge Phil. Soc. 44 (1948) 50,
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass
 
 import numpy as np
@@ -48,14 +47,13 @@ def promising_pairs(
     causes: Sequence[Cause],
     ended: Sequence[Fit],
     together: Callable[[Cause, Cause], bool],
-    pool: Executor,
 ) -> list[Pair]:
     """The best start of every pair of names, the most promising first.
 
     `screen` stands where the hypothesis without causes ended; `ended` are the causes fitted alone; `together` says
     whether two causes mean something beside each other, whatever their forms.
     """
-    moves = [move for some in pool.map(lambda c: _moves(screen, c, ended), causes) for move in some]
+    moves = [move for cause in causes for move in _moves(screen, cause, ended)]
     if len(moves) < 2:
         return []
     directions = np.array([m.direction for m in moves])

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.fft import next_fast_len
 from scipy.linalg import solve_toeplitz
 from scipy.signal import lfilter
 
@@ -69,8 +70,7 @@ def whitening_filter(residuals: FloatArray, order: int = _ORDER) -> FloatArray:
     n = r.size
     if n < 20 * order or not r.any():
         return np.ones(1)
-    power = np.abs(np.fft.rfft(r, 2 * n)) ** 2
-    acf = np.fft.irfft(power)[: order + 1] / n
+    acf = _sums(r, order) / n
     acf[0] *= 1.0 + 1e-6
     return np.concatenate([[1.0], -solve_toeplitz(acf[:order], acf[1:])])
 
@@ -82,7 +82,7 @@ def student_log_likelihood(values: FloatArray) -> float:
     least = max(_LEAST_SCALE * float(np.mean(square)), 1e-12)
     scale = max(float(np.median(square)) / 0.528, least)
     for _ in range(25):
-        new = max(float(np.mean((_NU + 1.0) * square / (_NU + square / scale))), least)
+        new = max((_NU + 1.0) * scale * float(np.mean(square / (square + _NU * scale))), least)
         if abs(new - scale) < 1e-5 * scale:
             break
         scale = new
@@ -96,8 +96,7 @@ def inflation(residuals: FloatArray, use: np.ndarray) -> float:
     if n < 64:
         return 1.0
     r = r - r.mean()
-    power = np.abs(np.fft.rfft(r, 2 * n)) ** 2
-    acf = np.fft.irfft(power)[: n // 8]
+    acf = _sums(r, n // 8 - 1)
     if acf[0] <= 0.0:
         return 1.0
     acf = acf / acf[0]
@@ -105,6 +104,13 @@ def inflation(residuals: FloatArray, use: np.ndarray) -> float:
     negative = np.flatnonzero(pairs <= 0.0)
     last = int(negative[0]) if negative.size else pairs.size
     return float(np.clip(1.0 + 2.0 * np.sum(pairs[:last]), 1.0, n / 16.0))
+
+
+def _sums(r: FloatArray, last: int) -> FloatArray:
+    """Sums of products of `r` with itself 0 to `last` places on: no more zeros behind it than keep these apart."""
+    length = next_fast_len(r.size + last, real=True)
+    power = np.abs(np.fft.rfft(r, length)) ** 2
+    return np.asarray(np.fft.irfft(power, length)[: last + 1])
 
 
 def _log_volume(fit: Fit, phi: float) -> float:

@@ -9,7 +9,6 @@ Source: the score (gradient) test, Rao, Proc. Cambridge Phil. Soc. 44 (1948) 50.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from concurrent.futures import Executor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -115,12 +114,9 @@ def make_screen(channel: Channel, base: Plant, parent: Fit) -> Screen:
     return Screen(channel, base, space, z, r - basis @ (basis.T @ r), basis)
 
 
-def prospects(
-    screen: Screen, todo: Sequence[tuple[Cause, ...]], known: Sequence[Fit], pool: Executor
-) -> list[Prospect]:
+def prospects(screen: Screen, todo: Sequence[tuple[Cause, ...]], known: Sequence[Fit]) -> list[Prospect]:
     """All hypotheses of `todo`, the most promising first."""
-    found = pool.map(lambda causes: screen.prospect(causes, known), todo)
-    return sorted(found, key=lambda p: -p.gain)
+    return sorted((screen.prospect(causes, known) for causes in todo), key=lambda p: -p.gain)
 
 
 def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from typing import TypeVar
 
 import numpy as np
 
@@ -16,7 +17,8 @@ from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
 from twin.choose.nested import beyond_retuning, nested
-from twin.choose.pairs import promising_pairs
+from twin.choose.pairs import Pair, promising_pairs
+from twin.choose.polish import polished
 from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
 from twin.choose.score import yardstick_for
 from twin.choose.screen import make_screen, prospects
@@ -28,6 +30,8 @@ from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
 from twin.plant import Plant
 
 Progress = Callable[[str, float], None]
+_T = TypeVar("_T")
+_R = TypeVar("_R")
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,7 +108,7 @@ class Searcher:
         numbers = number_causes(self.channel)
         causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
-        fits = self._fit_all([*((c,) for c in causes), *pairs], [], self.rules.rounds, "one cause")
+        fits = self._fit_all([*((c,) for c in causes), *pairs], [], "one cause")
         with ThreadPoolExecutor(self.rules.threads) as pool:
             fits = nested(self.channel, fits, self.rules.rounds, pool)
             fits = beyond_retuning(self.channel, fits, retuned, self.rules.rounds, pool)
@@ -114,20 +118,29 @@ class Searcher:
     def _extended(self, level: Sequence[Fit], size: int) -> list[Fit]:
         """Every hypothesis of the beam with one more cause, of those that promise something."""
         singles = number_causes(self.channel) + effect_causes(self.channel, self.base)
-        fits: list[Fit] = []
+        fits = self._each(lambda p: self._beyond(*p), self._further(level, singles), f"{size} causes")
+        found = [f for some in fits for f in some]
+        if size == 2:
+            found += self._paired([c for c in singles if c.form is not None])
+            found += self._reformed(best_forms(found, self.channel.use, self.origins[0]))
+        return self._polished(best_forms(found, self.channel.use, self.origins[0]))
+
+    def _further(self, level: Sequence[Fit], singles: Sequence[Cause]) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
+        """The hypotheses of the beam, each with what one more cause makes of it; no causes twice."""
+        found = []
         seen: set[tuple[str, ...]] = set()
         for parent in self._likely(level)[: self.rules.beam]:
             more = [c for c in singles if c.name not in parent.names and not same_claim(parent, c)]
             more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
-            todo = [(*parent.space.causes, c) for c in more]
-            numbers = [causes for causes in todo if causes[-1].form is None]
-            fits += self._fit_all(numbers, [parent, *self.tried], self.rules.rounds, f"{size} causes")
-            fits += self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
+            found.append((parent, [(*parent.space.causes, c) for c in more]))
             seen |= {tuple(sorted((*parent.names, c.name))) for c in more}
-        if size == 2:
-            fits += self._paired([c for c in singles if c.form is not None])
-            fits += self._reformed(best_forms(fits, self.channel.use, self.origins[0]))
-        return self._polished(best_forms(fits, self.channel.use, self.origins[0]))
+        return found
+
+    def _beyond(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
+        """Fits of those of `todo`, `parent` with one more cause: every number, and the effects that promise most."""
+        numbers = [causes for causes in todo if causes[-1].form is None]
+        fits = [self._fit(causes, [parent, *self.tried]) for causes in numbers]
+        return fits + self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
 
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
@@ -135,10 +148,8 @@ class Searcher:
         best = self._likely(pairs)[0] if pairs else None
         if best is None or (best.mse - 1.0 <= least and bent_by(best) < self.rules.bent):
             return []
-        fits: list[Fit] = []
-        for alone, todo in in_other_forms(pairs, self.tried, self.rules.reformed):
-            fits += self._promising(alone, todo)
-        return fits
+        todo = in_other_forms(pairs, self.tried, self.rules.reformed)
+        return [f for some in self._each(lambda p: self._promising(*p), todo, "other forms") for f in some]
 
     def _drifting(self, level: Sequence[Fit]) -> list[Fit]:
         """What drifts beside the likeliest cause, where it may hide in the noise: more is not to be found there."""
@@ -147,7 +158,7 @@ class Searcher:
         causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
         likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
-        fits = self._fit_all(pairs, [*likely, *self.tried], self.rules.rounds, "drifts")
+        fits = self._fit_all(pairs, [*likely, *self.tried], "drifts")
         return best_forms(fits, self.channel.use, self.origins[0])
 
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
@@ -167,8 +178,7 @@ class Searcher:
             todo = {exactly(some): (some, one) for some in beside} | todo  # from the likeliest that has it
         known = {exactly(f.space.causes): f.mse for f in found}
         new = [p for key, p in todo.items() if p[1].mse < self.rules.stuck * known.get(key, np.inf)]
-        with ThreadPoolExecutor(self.rules.threads) as pool:
-            return list(pool.map(lambda p: self._fit_from(*p), new))
+        return self._each(lambda p: self._fit_from(*p), new, "neighbours")
 
     def _fit_from(self, causes: tuple[Cause, ...], parent: Fit) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
@@ -181,57 +191,38 @@ class Searcher:
     def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""
         screen = make_screen(self.channel, self.base, parent)
-        with ThreadPoolExecutor(self.rules.threads) as pool:
-            best = some_of_each(prospects(screen, todo, self.tried, pool), self.rules.screened, self.rules.forms)
-            return list(pool.map(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), best))
+        best = some_of_each(prospects(screen, todo, self.tried), self.rules.screened, self.rules.forms)
+        return [fit(self.channel, p.space, [p.start], rounds=self.rules.rounds) for p in best]
 
     def _paired(self, causes: Sequence[Cause]) -> list[Fit]:
         """Full fits of the pairs of effects whose moves of the residual add up best."""
-        with ThreadPoolExecutor(self.rules.threads) as pool:
-            todo = []
-            for origin in self.origins:
-                screen = make_screen(self.channel, self.base, origin)
-                todo += promising_pairs(screen, causes, self.tried, together, pool)[: self.rules.paired]
-            return list(pool.map(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), todo))
+
+        def best(origin: Fit) -> list[Pair]:
+            screen = make_screen(self.channel, self.base, origin)
+            return promising_pairs(screen, causes, self.tried, together)[: self.rules.paired]
+
+        todo = [pair for some in self._each(best, self.origins, "pairs") for pair in some]
+        return self._each(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), todo, "pairs")
 
     def _polished(self, fits: Sequence[Fit]) -> list[Fit]:
-        ranked = sorted(fits, key=lambda f: f.mse)
-        top, rest = ranked[: self.rules.polish], ranked[self.rules.polish :]
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            polished = list(pool.map(lambda f: fit(self.channel, f.space, [f.z], rounds=12), top))
-            best = min(polished, key=lambda f: f.mse)
-            # What the best found for a cause may be what the others missed: rough valleys are found by chance.
-            told = list(pool.map(lambda f: self._told(f, best), polished))
-            return sorted([*told, *rest], key=lambda f: f.mse)
+            return polished(self.channel, fits, self.rules.polish, pool)
 
-    def _told(self, one: Fit, best: Fit) -> Fit:
-        """`one` fitted again from what `best` found for the causes that they share, where the response jumps."""
-        rough = {
-            c.name for c in one.space.causes if c.form is not None and not all(p.smooth for p in c.form.parameters)
-        }
-        if one is best or not rough & set(best.names):
-            return one
-        start = starts_of(one.space, [best, one])[0]
-        count = len(one.space.numbers)
-        start[:count] = one.z[:count]
-        again = fit(self.channel, one.space, [start], rounds=8)
-        return min(one, again, key=lambda f: f.mse)
+    def _fit_all(self, hypotheses: Iterable[tuple[Cause, ...]], known: Sequence[Fit], what: str) -> list[Fit]:
+        return self._each(lambda causes: self._fit(causes, known), list(hypotheses), what)
 
-    def _fit_all(
-        self, hypotheses: Iterable[tuple[Cause, ...]], known: Sequence[Fit], rounds: int, what: str
-    ) -> list[Fit]:
-        todo = list(hypotheses)
+    def _fit(self, causes: tuple[Cause, ...], known: Sequence[Fit]) -> Fit:
+        space = make_space(self.base, causes, self._numbers(causes), self.scales)
+        return fit(self.channel, space, starts_of(space, known, self.channel.recordings), rounds=self.rules.rounds)
 
-        def one(causes: tuple[Cause, ...]) -> Fit:
-            space = make_space(self.base, causes, self._numbers(causes), self.scales)
-            return fit(self.channel, space, starts_of(space, known, self.channel.recordings), rounds=rounds)
-
+    def _each(self, function: Callable[[_T], _R], items: Sequence[_T], what: str) -> list[_R]:
+        """`function` of each of the items, side by side in threads; in their order."""
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            fits = []
-            for done, result in enumerate(pool.map(one, todo), start=1):
-                self.progress(f"{self.channel.name}: {what}", done / len(todo))
-                fits.append(result)
-        return fits
+            results = []
+            for done, result in enumerate(pool.map(function, items), start=1):
+                self.progress(f"{self.channel.name}: {what}", done / len(items))
+                results.append(result)
+        return results
 
     def _numbers(self, causes: Sequence[Cause]) -> tuple[str, ...]:
         """Nuisance numbers ride along with effects only; accused numbers alone leave the others as designed."""
