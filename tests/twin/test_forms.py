@@ -117,6 +117,16 @@ def test_against_a_seat_only_a_share_of_the_compliance_is_left(form: str, beyond
             assert np.interp(needed, grid, table) == pytest.approx(xi * DESIGN.travel, abs=3e-3)
 
 
+def test_both_stops_are_looked_for_just_within_what_was_read() -> None:
+    readings = [(np.arange(400.0), DESIGN.travel * np.clip(np.sin(0.1 * np.arange(400.0)), -0.4, 0.45) + 0.3)]
+    form = effect("reduced_travel").form("both_stops")
+    assert form.starts_for is not None
+    starts = np.array(form.starts_for(readings, Scales()))
+    closed, opened = 1.0 - (0.45 + 0.3 / DESIGN.travel), -0.4 + 0.3 / DESIGN.travel
+    assert sorted(set(starts[:, 0])) == pytest.approx([closed + 0.002, closed + 0.01])
+    assert sorted(set(starts[:, 1])) == pytest.approx([opened + 0.002, opened + 0.01])
+
+
 def test_a_limit_of_the_converter_that_is_just_reached_is_found() -> None:
     """Ramps of 0.4 psi/s against limits of 0.35 and 0.3 psi/s, with starts at which none is met."""
     true = (1.0 / 0.35, 1.0 / 0.30)

@@ -17,16 +17,19 @@ _TRAVEL_IN = DesignModel().travel  # of the valve that scales refer to
 _BEYOND = 0.002
 
 
-def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
-    """Just within the furthest that was read, and anywhere.
+def _near(readings: Readings, scales: Scales, closed: bool) -> list[float]:
+    """Just within the furthest that was read.
 
     A stop beyond that does nothing, and for one far within it all else bends to make up.
     """
     read = np.concatenate([reading[np.isfinite(reading)] for _, reading in readings])
     share = np.quantile(read, 1.0 - _BEYOND if closed else _BEYOND) / (_TRAVEL_IN * scales.position)
     furthest = 1.0 - share if closed else share
-    near = [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
-    return [*((value,) for value in near), *((value,) for value in _ANYWHERE)]
+    return [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
+
+
+def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
+    return [(value,) for value in (*_near(readings, scales, closed), *_ANYWHERE)]
 
 
 def _closed(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
@@ -37,10 +40,14 @@ def _open(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
     return _reached(readings, scales, closed=False)
 
 
-def _missing(doc: str) -> tuple[Parameter]:
+def _both(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+    return [(up, low) for up in _near(readings, scales, closed=True) for low in _near(readings, scales, closed=False)]
+
+
+def _missing(doc: str, name: str = "missing") -> tuple[Parameter, ...]:
     return (
         Parameter(
-            name="missing",
+            name=name,
             kind="fraction",
             lower=-0.2,
             upper=0.8,
@@ -57,6 +64,11 @@ def _upper(c: Coefficients, values: Sequence[float]) -> None:
 
 def _lower(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[[V_LOW, V_HARD_LOW]] += values[0] * c.design.travel
+
+
+def _both_stops(c: Coefficients, values: Sequence[float]) -> None:
+    _upper(c, values[:1])
+    _lower(c, values[1:])
 
 
 def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:
@@ -105,12 +117,20 @@ EFFECT = Effect(
     name="reduced_travel",
     stage="actuator",
     claim="An end stop is not where the design says.",
-    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower); hit: only x is held, "
-    "so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is give times the design's",
+    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower), or between two such; "
+    "hit: only x is held, so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is "
+    "give times the design's",
     source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
     forms=(
         Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper, _closed),
         Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower, _open),
+        Form(
+            "both_stops",
+            _missing("fraction of travel missing at the closed end", "missing_closed")
+            + _missing("fraction of travel missing at the open end", "missing_open"),
+            _both_stops,
+            _both,
+        ),
         Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit, _closed),
         Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit, _open),
         Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
