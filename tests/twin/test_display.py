@@ -37,7 +37,8 @@ def displayed(keeps: float, first: float = 0.0) -> Recording:
 
 
 def test_what_it_was_switched_on_with_is_no_step_of_it() -> None:
-    assert lattice_step(displayed(0.15, 0.17 * STEP_IN).position) == pytest.approx(STEP_IN, rel=1e-3)
+    for first in (0.17, 0.995, 1.006):  # and it may be so near to a step that both are seen
+        assert lattice_step(displayed(0.15, first * STEP_IN).position) == pytest.approx(STEP_IN, rel=1e-3)
 
 
 def test_several_levels_off_the_steps_are_a_finer_step() -> None:

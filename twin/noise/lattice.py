@@ -70,6 +70,9 @@ def _without_strangers(gaps: FloatArray, step: float) -> FloatArray:
 
     A display that moves on by whole steps only may still show, at first, what it was switched on with.
     """
+    close = np.flatnonzero(gaps < _STRANGE * step)  # beside a level of the lattice
+    if 0 < close.size <= max(1, _STRANGERS * gaps.size):
+        gaps = np.delete(gaps, close)
     off = np.abs(gaps / step - np.round(gaps / step)) > _STRANGE
     over = gaps[:-1] + gaps[1:]
     between = off[:-1] & off[1:] & (np.abs(over / step - np.round(over / step)) < _STRANGE)
