@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,9 +10,9 @@ from hal.errors import BadInput
 from logs.assemble import Signals, assemble
 from logs.layout import is_run_folder
 from logs.recording import CommandTiming, DataNote, Recording
-from logs.roles import QUANTITY, Column, Role, assign, parse_pairs, split_header
+from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pairs, split_header
 from logs.table import Table, read_table
-from logs.units import PERCENT, conversion, plain_name
+from logs.units import HOUSE_UNIT, PERCENT, conversion, plain_name
 
 if TYPE_CHECKING:
     from logs.run import Run
@@ -47,7 +47,7 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
     if run.rows < 2:
         raise BadInput(f"{where}: the run holds {run.rows} samples ({run.reason}); a recording needs at least 2")
     names = [name for name in run.columns if not name.startswith("next_")]
-    columns = assign(names, {}, where)
+    columns = assign(names, _as_we_name_them(names), where)
     stated = {role: run.units.get(column.header) or column.unit for role, column in columns.items()}
     notes: tuple[DataNote, ...] = ()
     if "pressure" in columns and plain_name(stated["command"]) == PERCENT != plain_name(stated["pressure"]):
@@ -71,6 +71,14 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
         "problems": run.problems,
     }
     return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)
+
+
+def _as_we_name_them(names: Sequence[str]) -> dict[Role, str]:
+    """The columns of a run on our own bench, which need no guesses; none where it is in other units."""
+    ours: dict[Role, str] = {role: f"{role}_{HOUSE_UNIT[QUANTITY[role]]}" for role in ROLES}
+    if any(ours[role] not in names for role in NEEDED):
+        return {}
+    return {role: name if name in names else "" for role, name in ours.items()}
 
 
 def _load_table(

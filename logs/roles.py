@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal, cast, get_args
 
@@ -95,11 +95,13 @@ def assign(headers: Sequence[str], mapping: Mapping[Role, str], where: str) -> d
 
 
 def _mapped(role: Role, name: str, headers: Sequence[str], where: str) -> Column:
-    for same in (
-        [header for header in headers if header == name],
-        [header for header in headers if header.strip().casefold() == name.casefold()],
-        [header for header in headers if split_header(header, QUANTITY[role]).label == _label(name)],
-    ):
+    ways: tuple[Callable[[str], bool], ...] = (
+        lambda header: header == name,
+        lambda header: header.strip().casefold() == name.casefold(),
+        lambda header: split_header(header, QUANTITY[role]).label == _label(name),
+    )
+    for fits in ways:
+        same = [header for header in headers if fits(header)]
         if len(same) == 1:
             return split_header(same[0], QUANTITY[role])
         if len(same) > 1:
