@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -41,13 +43,30 @@ def _open(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
 
 
 def _both(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
-    return [(up, low) for up in _near(readings, scales, closed=True) for low in _near(readings, scales, closed=False)]
+    """Just within the furthest that was read at both ends, where that is within the travel."""
+    closed, opened = ([max(v, 0.0) for v in _near(readings, scales, closed=end)] for end in (True, False))
+    return list(product(closed, opened))
 
 
-def _missing(doc: str, name: str = "missing") -> tuple[Parameter, ...]:
+def _both_missing() -> tuple[Parameter, ...]:
+    """Two stops that both take some of the travel: moved alike they would be a zero of the reading."""
+    (one,) = _missing("")
+    return tuple(
+        replace(
+            one,
+            name=f"missing_{end}",
+            lower=0.0,
+            starts=(0.005, 0.04),
+            doc=f"fraction of travel missing at the {end} end",
+        )
+        for end in ("closed", "open")
+    )
+
+
+def _missing(doc: str) -> tuple[Parameter]:
     return (
         Parameter(
-            name=name,
+            name="missing",
             kind="fraction",
             lower=-0.2,
             upper=0.8,
@@ -124,13 +143,7 @@ EFFECT = Effect(
     forms=(
         Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper, _closed),
         Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower, _open),
-        Form(
-            "both_stops",
-            _missing("fraction of travel missing at the closed end", "missing_closed")
-            + _missing("fraction of travel missing at the open end", "missing_open"),
-            _both_stops,
-            _both,
-        ),
+        Form("both_stops", _both_missing(), _both_stops, _both),
         Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit, _closed),
         Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit, _open),
         Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
