@@ -194,7 +194,8 @@ class Form:
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond
     doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What is `described`
     is for design models of real machines and never a candidate. What lies `outside` of the vocabulary, in these words,
-    is a rival only: where it explains best, the verdict is that nothing known does.
+    is a rival only: where it explains best, the verdict is that nothing known does. What goes through points of its
+    own is `free`, and no law.
     """
 
     name: str
@@ -207,6 +208,7 @@ class Form:
     described: bool = False
     by_pressure: bool = False
     outside: str = ""
+    free: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,8 +221,9 @@ class Effect:
     (an asymmetry has no canonical middle). `same_as` gives, per form, the effects that no record of
     these signals can tell from it. `twins` are effects with a similar signature; `equations` and `source` are printed.
     What `drifts` makes repeats differ, and so hides in a noise that was measured between them. What is `erratic`
-    moves in jumps whose order hangs on the smallest difference: no model follows it for long. A form of it that each
-    recording has apart also takes what it `hides`, which the laws of the other forms leave to be named.
+    moves in jumps whose order hangs on the smallest difference: no model follows it for long. A form of it that is
+    free, or that each recording has apart, also takes what it `hides`, which the laws of the other forms leave to be
+    named.
     """
 
     name: str

@@ -144,6 +144,25 @@ def test_a_zero_error_and_a_drift_go_before_zeros_of_each_recordings_own() -> No
     assert chosen(one({"lvdt_drift": "linear", "lvdt_calibration": "zero"}, 12, 0.989)) is zeros
 
 
+def test_an_asymmetry_and_a_spot_go_before_a_free_profile_of_the_friction() -> None:
+    """... where the two laws are likelier; a law of the friction hides no asymmetry."""
+
+    def one(causes: dict[str, str], unknowns: int, mse: float, score: float) -> Any:
+        some = [Cause(name, effect(name), effect(name).form(form)) for name, form in causes.items()]
+        space = SimpleNamespace(causes=some, unknowns=[None] * unknowns)
+        return SimpleNamespace(names=tuple(causes), mse=mse, space=space, score=score)
+
+    def chosen(curve: Any, score: float) -> bool:
+        laws = one({"spring_asymmetry": "hinged_mid", "position_dependent_friction": "spot"}, 9, 0.957, score)
+        findings: Any = SimpleNamespace(none=fitted(0, 315.0), fits=(curve, laws), score=lambda f: f.score)
+        return _fewer_unknowns(findings, curve, DecisionRules()) is laws
+
+    profile = one({"position_dependent_friction": "profile"}, 18, 0.921, -3104.0)
+    assert chosen(profile, -3092.0)
+    assert not chosen(profile, -3120.0)
+    assert not chosen(one({"position_dependent_friction": "spot"}, 18, 0.921, -3104.0), -3092.0)
+
+
 @pytest.mark.parametrize(
     ("deviations", "left", "accused", "explained"),
     [

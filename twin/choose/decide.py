@@ -133,7 +133,7 @@ def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
         for f in findings.fits
         if len(f.space.unknowns) <= len(fit.space.unknowns) - _FREE
         and f.mse <= fit.mse + slack
-        and (_with_another(f, fit) or lays_open(f, fit))
+        and (_with_another(f, fit) or (lays_open(f, fit) and findings.score(f) > findings.score(fit) - rules.evidence))
     ]
     return max(near, key=findings.score) if near else fit
 

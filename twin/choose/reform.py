@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from twin.effect import Form
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
 
@@ -26,12 +27,14 @@ def bent_by(one: Fit) -> float:
 
 def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
     """A hypothesis with one effect that a curve hides which each recording has of its own, with a law for that curve,
-    and in its place.
+    and in its place. What a free curve hides is looked for like any pair.
 
     `causes`: all candidates in all forms.
     """
     found = []
     for curve, hides in _hiding(one.space.causes):
+        if curve.form is None or not curve.form.apart:
+            continue
         rest = [c for c in one.space.causes if c is not curve]
         laws = [c for c in causes if c.name == curve.name and c.form and not (c.form.apart or c.form.outside)]
         hidden = [c for c in causes if c.name in hides and c.name not in one.names]
@@ -41,15 +44,20 @@ def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:
 
 
 def lays_open(larger: Fit, one: Fit) -> bool:
-    """Whether `larger` has what a curve of `one`, which each recording has of its own, hides, and nothing else more."""
+    """Whether `larger` has what a curve of `one` hides, and nothing else more."""
     more = set(larger.names) - set(one.names)
     hidden = {name for _, hides in _hiding(one.space.causes) for name in hides}
     return set(one.names) < set(larger.names) and len(more) == 1 and more <= hidden
 
 
 def _hiding(causes: Sequence[Cause]) -> list[tuple[Cause, tuple[str, ...]]]:
-    """Those of the causes that each recording has of its own, with the effects that they hide."""
-    return [(c, c.effect.hides) for c in causes if c.effect and c.form and c.form.apart and not c.form.outside]
+    """Those of the causes that are curves, with the effects that they hide."""
+    return [(c, c.effect.hides) for c in causes if c.effect and c.form and _curved(c.form) and not c.form.outside]
+
+
+def _curved(form: Form) -> bool:
+    """Whether a form is no law, but a free curve, or one of each recording's own."""
+    return form.free or form.apart > 0
 
 
 def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:

@@ -130,8 +130,9 @@ EFFECT = Effect(
         Form("stem_bow", (_MID,), _stem_bow),
         Form("stem_open_end", (_OPEN,), _stem_open_end),
         Form("stem_closed_end", (_CLOSED,), _stem_closed_end),
-        Form("profile", tuple(_knot(at) for at in KNOTS), _profile, _profile_starts),
+        Form("profile", tuple(_knot(at) for at in KNOTS), _profile, _profile_starts, free=True),
     ),
     twins=("stiction", "spring_asymmetry"),
     absorbs=("deadband",),
+    hides=("spring_asymmetry",),
 )
