@@ -9,7 +9,7 @@ Source: the score (gradient) test, Rao, Proc. Cambridge Phil. Soc. 44 (1948) 50,
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -44,7 +44,7 @@ class Pair:
 
 def promising_pairs(
     screen: Screen,
-    causes: Sequence[Cause],
+    causes: Iterable[Cause],
     ended: Sequence[Fit],
     together: Callable[[Cause, Cause], bool],
 ) -> list[Pair]:

@@ -8,7 +8,7 @@ Source: the score (gradient) test, Rao, Proc. Cambridge Phil. Soc. 44 (1948) 50.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -114,7 +114,7 @@ def make_screen(channel: Channel, base: Plant, parent: Fit) -> Screen:
     return Screen(channel, base, space, z, r - basis @ (basis.T @ r), basis)
 
 
-def prospects(screen: Screen, todo: Sequence[tuple[Cause, ...]], known: Sequence[Fit]) -> list[Prospect]:
+def prospects(screen: Screen, todo: Iterable[tuple[Cause, ...]], known: Sequence[Fit]) -> list[Prospect]:
     """All hypotheses of `todo`, the most promising first."""
     return sorted((screen.prospect(causes, known) for causes in todo), key=lambda p: -p.gain)
 

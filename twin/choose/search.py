@@ -6,9 +6,10 @@ Every hypothesis is fitted together with the design numbers; hypotheses of one s
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from dataclasses import dataclass, field
+from threading import Event
 from typing import TypeVar
 
 import numpy as np
@@ -69,6 +70,7 @@ class Searcher:
     resting: float = 1.0  # mean squared error of a reading at rest: below 1 where the noise is that of repeats
     origins: list[Fit] = field(default_factory=list)  # hypotheses without a cause, from where pairs are looked for
     tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
+    stopped: Event = field(default_factory=Event)
 
     def run(self) -> Findings:
         """The whole search."""
@@ -108,7 +110,7 @@ class Searcher:
         numbers = number_causes(self.channel)
         causes = numbers + effect_causes(self.channel, self.base)
         pairs = [(a, b) for k, a in enumerate(numbers) for b in numbers[k + 1 :]]
-        fits = self._fit_all([*((c,) for c in causes), *pairs], [], "one cause")
+        fits = self._each(lambda some: self._fit(some, []), [*((c,) for c in causes), *pairs], "one cause")
         with ThreadPoolExecutor(self.rules.threads) as pool:
             fits = nested(self.channel, fits, self.rules.rounds, pool)
             fits = beyond_retuning(self.channel, fits, retuned, self.rules.rounds, pool)
@@ -139,7 +141,7 @@ class Searcher:
     def _beyond(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Fits of those of `todo`, `parent` with one more cause: every number, and the effects that promise most."""
         numbers = [causes for causes in todo if causes[-1].form is None]
-        fits = [self._fit(causes, [parent, *self.tried]) for causes in numbers]
+        fits = [self._fit(causes, [parent, *self.tried]) for causes in self._wanted(numbers)]
         return fits + self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
 
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
@@ -158,7 +160,7 @@ class Searcher:
         causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
         likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
-        fits = self._fit_all(pairs, [*likely, *self.tried], "drifts")
+        fits = self._each(lambda some: self._fit(some, [*likely, *self.tried]), pairs, "drifts")
         return best_forms(fits, self.channel.use, self.origins[0])
 
     def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
@@ -191,15 +193,15 @@ class Searcher:
     def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""
         screen = make_screen(self.channel, self.base, parent)
-        best = some_of_each(prospects(screen, todo, self.tried), self.rules.screened, self.rules.forms)
-        return [fit(self.channel, p.space, [p.start], rounds=self.rules.rounds) for p in best]
+        best = some_of_each(prospects(screen, self._wanted(todo), self.tried), self.rules.screened, self.rules.forms)
+        return [fit(self.channel, p.space, [p.start], rounds=self.rules.rounds) for p in self._wanted(best)]
 
     def _paired(self, causes: Sequence[Cause]) -> list[Fit]:
         """Full fits of the pairs of effects whose moves of the residual add up best."""
 
         def best(origin: Fit) -> list[Pair]:
             screen = make_screen(self.channel, self.base, origin)
-            return promising_pairs(screen, causes, self.tried, together)[: self.rules.paired]
+            return promising_pairs(screen, self._wanted(causes), self.tried, together)[: self.rules.paired]
 
         todo = [pair for some in self._each(best, self.origins, "pairs") for pair in some]
         return self._each(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), todo, "pairs")
@@ -208,21 +210,29 @@ class Searcher:
         with ThreadPoolExecutor(self.rules.threads) as pool:
             return polished(self.channel, fits, self.rules.polish, pool)
 
-    def _fit_all(self, hypotheses: Iterable[tuple[Cause, ...]], known: Sequence[Fit], what: str) -> list[Fit]:
-        return self._each(lambda causes: self._fit(causes, known), list(hypotheses), what)
-
     def _fit(self, causes: tuple[Cause, ...], known: Sequence[Fit]) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
         return fit(self.channel, space, starts_of(space, known, self.channel.recordings), rounds=self.rules.rounds)
 
     def _each(self, function: Callable[[_T], _R], items: Sequence[_T], what: str) -> list[_R]:
         """`function` of each of the items, side by side in threads; in their order."""
+        results = []
         with ThreadPoolExecutor(self.rules.threads) as pool:
-            results = []
-            for done, result in enumerate(pool.map(function, items), start=1):
-                self.progress(f"{self.channel.name}: {what}", done / len(items))
-                results.append(result)
+            try:
+                for done, result in enumerate(pool.map(function, items), start=1):
+                    self.progress(f"{self.channel.name}: {what}", done / len(items))
+                    results.append(result)
+            except KeyboardInterrupt:
+                self.stopped.set()
+                raise
         return results
+
+    def _wanted(self, items: Iterable[_T]) -> Iterator[_T]:
+        """The items one by one, as long as nobody has stopped the search: the threads would finish their portions."""
+        for item in items:
+            if self.stopped.is_set():
+                raise CancelledError
+            yield item
 
     def _numbers(self, causes: Sequence[Cause]) -> tuple[str, ...]:
         """Nuisance numbers ride along with effects only; accused numbers alone leave the others as designed."""
