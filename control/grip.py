@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from control.controller import Seen
 from control.design import DesignModel
 from control.exact import considered, dot, lag, length
-from control.play_filter import NOISE_IN, Belief
+from control.play_filter import LOUD, NOISE_IN, Belief
 from control.play_points import A1, A2, SIZE, W
 
 STEM, PLATE, SHARE = range(3)
@@ -26,7 +26,6 @@ LEAST, LEAST_IN = 15, 0.003  # readings, and how far a plate that slides had to 
 STAYS, SURELY = 0.4, 2.5  # it stays if its share is smaller by so many standard deviations
 PLACE_IN, SHARE_SD, CREEP_IN = 0.02, 1.0, 5e-5  # standard deviations at first; random walk of a plate per root second
 KNOWN_IN, NONE_SD = 0.001, 0.001  # a place that is known so well teaches the edge; doubt of "none" as a share
-LOUD = 2.0  # times the usual noise: the furthest of noisy pressures was not one, and nothing is said
 LANDED_PSI = 0.004  # doubt of the pressure at which the plate stopped
 _MEAN = (0.0, 0.0, 0.5)
 _SPREAD = tuple(
@@ -112,7 +111,8 @@ class Grip:
         )
 
     def stays(self, soon: Belief) -> bool:
-        """Whether the plate has stayed where it was, beyond doubt, though it was pushed."""
+        """Whether the plate has stayed where it was, beyond doubt, though it was pushed. The furthest of noisy
+        pressures was not one, and nothing is said."""
         if soon.noise_in > LOUD * NOISE_IN:
             return False
         share = self.means[SHARE] + SURELY * math.sqrt(max(self.spread[SHARE][SHARE], 0.0))

@@ -24,6 +24,8 @@ NOISE_IN = 0.0006
 # standard deviations of what the design may be wrong by: edges [psi], three numbers as shares; and these at the most
 EDGE_PSI, STIFFNESS, RATE, TRAVEL, MOST = 0.3, 0.015, 0.03, 0.02, 0.1
 WALK_PSI, CREEP_IN = 0.03, 1.5e-4  # random walk of the edges per travel moved, of the play output per root second
+LOUD, LOUD_WALK_PSI = 2.0, 0.012  # times the usual noise; then readings cannot teach an edge anew after every move
+CALIBRATES, LOUD_CALIBRATES = 0.1, 0.03  # of the converter; what follows a loud gauge moves the plate by that noise
 NOISE_PSI, STOP_IN = 0.004, 0.003
 REMEMBERED, LATE_DOUBT = 30, 0.1  # ticks of motion; share of what the stem went since a late reading that is doubt
 FIRST, LATER = 6, 0.02  # what the supposed noise weighs at the start, in readings; what a new reading weighs later
@@ -53,6 +55,11 @@ class Belief:
     def doubt_in(self) -> float:
         """Standard deviation of the play output [in]."""
         return math.sqrt(max(self.spread[SIZE * W + W], 0.0))
+
+    @property
+    def is_loud(self) -> bool:
+        """Whether both gauges are far noisier than usual; one alone looks so where moves are not as predicted."""
+        return self.noise_in > LOUD * NOISE_IN and self.noise_psi > LOUD * NOISE_PSI
 
     def edge_psi(self, position_in: float, side: int) -> float:
         """The pressure at which the edge on this side (+1 closing, -1 opening) holds the play output there."""
@@ -113,7 +120,7 @@ class PlayFilter:
     def observer(self, belief: Belief) -> Observer:
         """The design equations with compliance, rate limit and travel as learned."""
         learned = replace(self.design, compliance=belief.compliance, rate_limit=belief.rate_limit, travel=belief.travel)
-        return Observer(learned, bias_gain=0.1)
+        return Observer(learned, bias_gain=LOUD_CALIBRATES if belief.is_loud else CALIBRATES)
 
     def track(self, belief: Belief, seen: Seen, dt_s: float, late: Lateness) -> tuple[Belief, Belief]:
         """The belief for the next tick, and for the instant at which the next command begins to act."""
@@ -196,7 +203,8 @@ class PlayFilter:
             after = replace(after, w=0.0 if w < 0.5 * belief.travel else belief.travel)
             cov[W][W] += STOP_IN * STOP_IN
         doubt_in, lagged_in = belief.compliance * belief.doubt_psi * share, 0.03 * (after.x - before.x)
-        walk = WALK_PSI * WALK_PSI * moved_in / d.travel
+        walk_psi = LOUD_WALK_PSI if belief.is_loud else WALK_PSI
+        walk = walk_psi * walk_psi * moved_in / d.travel
         cov[W][W] += CREEP_IN * CREEP_IN * dt_s + doubt_in * doubt_in
         cov[X][X] += lagged_in * lagged_in
         cov[A1][A1] += walk

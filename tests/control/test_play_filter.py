@@ -13,7 +13,8 @@ from app.physics_bench import open_virtual
 from control.controller import Seen
 from control.design import DesignModel
 from control.lateness import Lateness
-from control.play_filter import Belief, PlayFilter
+from control.play_filter import NOISE_IN, NOISE_PSI, Belief, PlayFilter
+from control.play_points import A2, SIZE
 
 DESIGN = DesignModel()
 TICK_S = 0.1
@@ -70,6 +71,47 @@ def test_large_noise_is_heard_before_the_first_move() -> None:
     heard = [watch(seed, noise=4.0, stairs=np.zeros(8))[0].noise_in for seed in range(6)]
     assert np.median(heard) > 0.001
     assert np.median([watch(seed, stairs=np.zeros(8))[0].noise_in for seed in range(6)]) < 0.0008
+
+
+def rested(noise: float, seed: int) -> float:
+    """How far the pressure that a command is thought to settle at wanders over 30 s of one command, without a reason
+    but noise: standard deviation [psi]."""
+    opened = open_virtual(seed, noise=noise)
+    watcher, sample, found = PlayFilter(DESIGN), opened.bench.exchange(8.0), []
+    belief = watcher.start(seen(sample))
+    for tick in range(400):
+        belief, _ = watcher.track(belief, seen(sample), TICK_S, Lateness())
+        found.append(belief.inside.settles(8.0))
+        opened.clock.sleep_until((tick + 1) * TICK_S)
+        sample = opened.bench.exchange(8.0)
+    return float(np.std(found[100:]))
+
+
+def test_a_loud_gauge_does_not_shake_the_commands() -> None:
+    """What is taken for the converter's zero goes into the next command; 0.009 psi push a plate by 0.3 % of travel."""
+    usual, loud = (np.median([rested(noise, seed) for seed in range(5)]) for noise in (1.0, 4.0))
+    assert loud < 3.0 * usual
+
+
+@pytest.mark.parametrize(("stem", "pressure", "loud"), [(3.0, 3.0, True), (3.0, 1.0, False), (1.0, 3.0, False)])
+def test_moves_that_are_not_as_predicted_are_no_noise(stem: float, pressure: float, loud: bool) -> None:
+    """Late readings or a wrong compliance make the stem alone look loud, a dead time the pressure."""
+    start = PlayFilter(DESIGN).start(Seen(0.1, 9.5, 9.5))
+    assert replace(start, noise_in=stem * NOISE_IN, noise_psi=pressure * NOISE_PSI).is_loud == loud
+
+
+@pytest.mark.parametrize(("times", "walk_psi"), [(1.0, 0.03), (3.0, 0.012)])
+def test_a_move_takes_less_of_an_edge_that_loud_readings_cannot_teach_anew(times: float, walk_psi: float) -> None:
+    watcher = PlayFilter(DESIGN)
+    start = watcher.start(Seen(0.1, 9.5, 9.5))
+    belief = replace(start, noise_in=times * NOISE_IN, noise_psi=times * NOISE_PSI)
+    before, after_psi = belief.spread[SIZE * A2 + A2], belief.inside.p + 1.0
+    started_in = belief.inside.w
+    for _ in range(20):
+        belief = watcher.ahead(belief, after_psi, TICK_S)
+    went = (belief.inside.w - started_in) / DESIGN.travel
+    assert went > 0.2
+    assert belief.spread[SIZE * A2 + A2] - before == pytest.approx(walk_psi * walk_psi * went, rel=0.02)
 
 
 @pytest.mark.parametrize("rate_limit", [0.115, 0.125])
