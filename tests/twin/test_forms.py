@@ -117,6 +117,15 @@ def test_against_a_seat_only_a_share_of_the_compliance_is_left(form: str, beyond
             assert np.interp(needed, grid, table) == pytest.approx(xi * DESIGN.travel, abs=3e-3)
 
 
+def test_a_band_of_friction_is_as_high_all_over_and_nothing_elsewhere() -> None:
+    """A ring of scale, or a scored stretch: a bell through it misses the middle or the edges."""
+    banded = plant_with(("position_dependent_friction", "band", (0.2, 0.6, 0.25))).coefficients(1.0)
+    inside, outside = np.abs(banded.xi - 0.6) < 0.09, np.abs(banded.xi - 0.6) > 0.16
+    np.testing.assert_allclose(banded.close_shift[inside], 0.2, atol=0.003)
+    np.testing.assert_allclose(banded.open_shift[inside], -0.2, atol=0.003)
+    np.testing.assert_allclose(banded.close_shift[outside], 0.0, atol=0.003)
+
+
 def test_both_stops_are_looked_for_just_within_what_was_read() -> None:
     readings = [(np.arange(400.0), DESIGN.travel * np.clip(np.sin(0.1 * np.arange(400.0)), -0.4, 0.45) + 0.3)]
     form = effect("reduced_travel").form("both_stops")

@@ -9,10 +9,12 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
-from twin.shapes import CENTRE, WIDTH, bow, bump, detrended
+from twin.shapes import CENTRE, WIDTH, bow, bump, detrended, edge
 
 #: Length of the raised end, as a fraction of travel.
 END = 0.12
+#: Length of the edges of a band, likewise: as sharp as the grid on which the curves are bent.
+_EDGE = 0.03
 
 
 def _height(doc: str) -> Parameter:
@@ -39,6 +41,9 @@ def _knot(at: float) -> Parameter:
     )
 
 
+_ACROSS = replace(
+    WIDTH, upper=0.9, starts=(0.1, 0.3), scale=0.15, doc="how much of the travel it covers, as a fraction", neutral=0.2
+)
 #: A burr cuts one way only; one that helps is none.
 _BURR = replace(
     _height("extra pressure at the centre, needed in one direction only"), lower=0.0, starts=(0.04, 0.25, 0.8)
@@ -58,6 +63,11 @@ def _widen(c: Coefficients, shape: FloatArray) -> None:
 
 def _spot(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, values[0] * bump(c.xi, values[1], values[2]))
+
+
+def _band(c: Coefficients, values: Sequence[float]) -> None:
+    height, centre, width = values
+    _widen(c, height * (edge(c.xi, centre - 0.5 * width, _EDGE) - edge(c.xi, centre + 0.5 * width, _EDGE)))
 
 
 def _grip(c: Coefficients, shape: FloatArray) -> None:
@@ -116,11 +126,12 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
     equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
-    "or straight between points of the travel; stem_*: e of the stem x; closing_spot, opening_spot: e on one of the "
-    "two curves",
+    "or height within a band of that width, or straight between points of the travel; stem_*: e of the stem x; "
+    "closing_spot, opening_spot: e on one of the two curves",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _spot),
+        Form("band", (_height("extra half deadband within the band"), CENTRE, _ACROSS), _band),
         Form("stem_spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _stem_spot),
         Form("closing_spot", (_BURR, CENTRE, WIDTH), _closing_spot),
         Form("opening_spot", (_BURR, CENTRE, WIDTH), _opening_spot),
