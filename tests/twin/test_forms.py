@@ -126,27 +126,6 @@ def test_a_band_of_friction_is_as_high_all_over_and_nothing_elsewhere() -> None:
     np.testing.assert_allclose(banded.close_shift[outside], 0.0, atol=0.003)
 
 
-def test_both_stops_are_looked_for_just_within_what_was_read() -> None:
-    readings = [(np.arange(400.0), DESIGN.travel * np.clip(np.sin(0.1 * np.arange(400.0)), -0.4, 0.45) + 0.3)]
-    form = effect("reduced_travel").form("both_stops")
-    assert form.starts_for is not None
-    starts = np.array(form.starts_for(readings, Scales()))
-    closed, opened = 1.0 - (0.45 + 0.3 / DESIGN.travel), -0.4 + 0.3 / DESIGN.travel
-    assert sorted(set(starts[:, 0])) == pytest.approx([closed + 0.002, closed + 0.01])
-    assert sorted(set(starts[:, 1])) == pytest.approx([opened + 0.002, opened + 0.01])
-
-
-def test_both_stops_take_travel_for_their_shift_would_be_a_zero_of_the_reading() -> None:
-    readings = [(np.arange(400.0), 1.05 * DESIGN.travel * (0.5 + 0.5 * np.sin(0.1 * np.arange(400.0))))]
-    form = effect("reduced_travel").form("both_stops")
-    assert form.starts_for is not None
-    assert min(min(start) for start in form.starts_for(readings, Scales())) == 0.0
-    cause = Cause("reduced_travel", effect("reduced_travel"), form)
-    space = make_space(Plant(DESIGN), (cause,), (), Scales())
-    least = space.plant(np.clip(np.full(2, -9.0), space.lower, space.upper))
-    assert least.inserted[0].values == pytest.approx((0.0, 0.0))
-
-
 def test_a_limit_of_the_converter_that_is_just_reached_is_found() -> None:
     """Ramps of 0.4 psi/s against limits of 0.35 and 0.3 psi/s, with starts at which none is met."""
     true = (1.0 / 0.35, 1.0 / 0.30)

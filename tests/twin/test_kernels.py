@@ -116,7 +116,6 @@ SAME = {
     "creep": (plant_with("creep", "one_tail", 0.2, 20.0), PlainValve(creep=0.2, creep_tau=20.0)),
     "upper_stop": (plant_with("reduced_travel", "upper_stop", 0.2), PlainValve(high=0.8 * TRAVEL)),
     "lower_stop": (plant_with("reduced_travel", "lower_stop", 0.1), PlainValve(low=0.1 * TRAVEL)),
-    "both_stops": (plant_with("reduced_travel", "both_stops", 0.2, 0.1), PlainValve(low=0.05625, high=0.45)),
     "lvdt_gain": (plant_with("lvdt_calibration", "gain_and_zero", 0.03, 0.01), PlainValve(reading=steeper)),
     "lvdt_bow": (plant_with("lvdt_nonlinearity", "bow", 0.02), PlainValve(reading=curved)),
     "lvdt_drift": (plant_with("lvdt_drift", "linear", 2e-4), PlainValve(reading=lambda x, t: x + 2e-4 * t)),

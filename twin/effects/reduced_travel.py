@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
@@ -19,19 +17,16 @@ _TRAVEL_IN = DesignModel().travel  # of the valve that scales refer to
 _BEYOND = 0.002
 
 
-def _near(readings: Readings, scales: Scales, closed: bool) -> list[float]:
-    """Just within the furthest that was read.
+def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
+    """Just within the furthest that was read, and anywhere.
 
     A stop beyond that does nothing, and for one far within it all else bends to make up.
     """
     read = np.concatenate([reading[np.isfinite(reading)] for _, reading in readings])
     share = np.quantile(read, 1.0 - _BEYOND if closed else _BEYOND) / (_TRAVEL_IN * scales.position)
     furthest = 1.0 - share if closed else share
-    return [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
-
-
-def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
-    return [(value,) for value in (*_near(readings, scales, closed), *_ANYWHERE)]
+    near = [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
+    return [*((value,) for value in near), *((value,) for value in _ANYWHERE)]
 
 
 def _closed(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
@@ -40,27 +35,6 @@ def _closed(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
 
 def _open(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
     return _reached(readings, scales, closed=False)
-
-
-def _both(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
-    """Just within the furthest that was read at both ends, where that is within the travel."""
-    closed, opened = ([max(v, 0.0) for v in _near(readings, scales, closed=end)] for end in (True, False))
-    return list(product(closed, opened))
-
-
-def _both_missing() -> tuple[Parameter, ...]:
-    """Two stops that both take some of the travel: moved alike they would be a zero of the reading."""
-    (one,) = _missing("")
-    return tuple(
-        replace(
-            one,
-            name=f"missing_{end}",
-            lower=0.0,
-            starts=(0.005, 0.04),
-            doc=f"fraction of travel missing at the {end} end",
-        )
-        for end in ("closed", "open")
-    )
 
 
 def _missing(doc: str) -> tuple[Parameter]:
@@ -83,11 +57,6 @@ def _upper(c: Coefficients, values: Sequence[float]) -> None:
 
 def _lower(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[[V_LOW, V_HARD_LOW]] += values[0] * c.design.travel
-
-
-def _both_stops(c: Coefficients, values: Sequence[float]) -> None:
-    _upper(c, values[:1])
-    _lower(c, values[1:])
 
 
 def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:
@@ -136,14 +105,12 @@ EFFECT = Effect(
     name="reduced_travel",
     stage="actuator",
     claim="An end stop is not where the design says.",
-    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower), or between two such; "
-    "hit: only x is held, so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is "
-    "give times the design's",
+    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower); hit: only x is held, "
+    "so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is give times the design's",
     source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
     forms=(
         Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper, _closed),
         Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower, _open),
-        Form("both_stops", _both_missing(), _both_stops, _both),
         Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit, _closed),
         Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit, _open),
         Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
