@@ -23,6 +23,7 @@ from twin.plant import Plant
 from twin.stages import combined
 
 FOLDS = 2
+_THREADS = 2
 BLOCKS = 16
 _LONG_S = 20.0
 #: What the rows of a fold say nothing about stays within so many standard deviations of where the whole record put it.
@@ -120,7 +121,7 @@ def predict_folds(
     def predicted(fitted_on: FloatArray) -> FloatArray:
         return chain.prediction(combined(base, refitted(fits, channels, fitted_on)) if fits else base)
 
-    with ThreadPoolExecutor(FOLDS) as pool:
+    with ThreadPoolExecutor(_THREADS) as pool:
         for fold, reading in enumerate(pool.map(predicted, weights)):
             held = (folds == fold) & chain.use
             error[held] = (chain.measured - reading)[held]

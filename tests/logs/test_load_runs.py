@@ -36,6 +36,20 @@ def test_a_run_its_csv_and_its_parquet_are_one_recording(tmp_path: Path) -> None
     assert recordings[0].meta["status"] == "success"
 
 
+def test_a_run_of_our_own_bench_is_read_without_the_units_library(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Which takes as long to load as the run."""
+
+    def asked(name: str, *_: object) -> tuple[float, float]:
+        raise AssertionError(f"the units library was asked for {name}")
+
+    write_run(tmp_path / "run", valve_columns(100))
+    monkeypatch.setattr("logs.units._affine", asked)
+    recording = load_recording(tmp_path / "run")
+    assert recording.pressure is not None and recording.target is None
+
+
 def test_a_run_says_what_its_bench_flagged(tmp_path: Path) -> None:
     columns = valve_columns(100)
     columns["quality"][40:43] = 1.0
