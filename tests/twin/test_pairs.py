@@ -224,6 +224,8 @@ def test_zeros_of_each_recordings_own_are_tried_as_a_law_beside_what_they_hide()
         cause("lvdt_drift", "jump"),
         cause("lvdt_calibration", "zero"),
         cause("creep", "one_tail"),
+        cause("position_dependent_friction", "spot"),
+        cause("spring_asymmetry", "hinged_mid"),
     ]
 
     def laws(*causes: Cause) -> list[list[str]]:
@@ -238,3 +240,4 @@ def test_zeros_of_each_recordings_own_are_tried_as_a_law_beside_what_they_hide()
     ]
     assert laws(candidates[0]) == []
     assert laws(candidates[1], candidates[3]) == []
+    assert laws(cause("position_dependent_friction", "profile")) == []  # what that hides is looked for like any pair

@@ -13,7 +13,6 @@ import pytest
 from tests.twin.report_example import diagnosis, series
 from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Ranked, Share
 from twin.report.content import cause_rows, columns, gap_marks, ranking_rows, share_bars, top_share
-from twin.report.figures import planes
 from twin.report.page import render, write_report
 from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
 from twin.report.story import story
@@ -200,13 +199,6 @@ def test_a_fast_stroke_is_drawn_whole() -> None:
     assert set(range(2500, 2600)) <= set(rows.tolist())
     broken = np.where(np.arange(n) % 1000 == 7, np.nan, driver)
     assert set(range(7, n, 1000)) <= set(thin_together((broken, driver), 2000).tolist())  # a cut stays a cut
-
-
-def test_in_the_plane_models_are_drawn_on_the_rows_of_what_was_measured() -> None:
-    figure = planes.__wrapped__(series(2000))
-    lines = [line for axes in figure.axes for line in axes.lines]
-    assert len(lines) == 4
-    assert all(np.array_equal(line.get_xdata(), lines[0].get_xdata(), equal_nan=True) for line in lines)
 
 
 def test_thinning_keeps_extremes_and_windows_stay_in_one_record(shown: Series) -> None:

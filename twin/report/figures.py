@@ -8,7 +8,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
-from twin.report.style import AFTER, BEFORE, FLOOR, HELDOUT, INK, MEASURED, MUTED, RETUNED, drawn, new_figure, tidy
+from twin.report.style import AFTER, BEFORE, FLOOR, INK, MEASURED, MUTED, RETUNED, UNCOUNTED, drawn, new_figure, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,7 +24,7 @@ def over_time(series: Series, floor_percent: float) -> Figure:
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=[3, 2])
     time = series.run_time_s
     for axes in (top, bottom):
-        _shade_heldout(axes, series, time)
+        _shade_uncounted(axes, series, time)
     broken = np.where(series.starts, np.nan, time)
     _line(top, broken, series.percent(series.position), MEASURED, "measured", 2.6, 0.35)
     _line(top, broken, series.percent(series.before), BEFORE, "design model", 1.0)
@@ -174,11 +174,12 @@ def _line(
     axes.plot(x[rows], y[rows], color=colour, label=label or None, linewidth=width, alpha=alpha, linestyle=style)
 
 
-def _shade_heldout(axes: Axes, series: Series, time: FloatArray) -> None:
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], series.heldout, [False]]).astype(np.int8)))
+def _shade_uncounted(axes: Axes, series: Series, time: FloatArray) -> None:
+    """Marks what the error on held-out data does not count; all else is held out in its turn."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], ~series.heldout, [False]]).astype(np.int8)))
     for number, (start, stop) in enumerate(zip(edges[::2], edges[1::2], strict=True)):
-        label = "held out in turn" if number == 0 and not series.heldout.all() else None
-        axes.axvspan(time[start], time[stop - 1], color=HELDOUT, linewidth=0, zorder=0, label=label)
+        label = "not counted" if number == 0 else None
+        axes.axvspan(time[start], time[min(stop, time.size - 1)], color=UNCOUNTED, linewidth=0, zorder=0, label=label)
 
 
 def _legend(axes: Axes) -> None:

@@ -22,7 +22,7 @@ class Series:
     Recordings follow each other: `record[i]` is the recording of row i, `time_s` starts anew with each. `before` is the
     design model as given, `retuned` the same with its own numbers refitted, `after` the updated model; all in the unit
     of position; `pressure_before` and `pressure_after` are what the first and the last of them make of the pressure.
-    `heldout` marks rows that no fit has seen, `false` rows recognised as false readings.
+    `heldout` marks rows that were held out in their turn, `false` rows recognised as false readings.
     """
 
     time_s: FloatArray

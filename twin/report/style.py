@@ -22,7 +22,7 @@ BEFORE = "#d9741a"
 RETUNED = "#8a6fc9"
 AFTER = "#0b7a75"
 FLOOR = "#c9d3dc"
-HELDOUT = "#f2f5f0"
+UNCOUNTED = "#e9e6e0"
 
 _RC: dict[Any, Any] = {
     "svg.fonttype": "none",
