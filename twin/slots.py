@@ -112,7 +112,9 @@ V_KEPT = 51  # how far friction that is the same at any speed keeps the stem fro
 V_GIVE_LOW = 52  # of what the stem is pulled beyond its lower stop, the share that still pulls it there [-]; 1: all
 V_GIVE_HIGH = 53
 V_FADES_SQUARED = 54  # 1: the extra friction falls with the square of the speed, as a Gaussian curve
-V_COUNT = 55
+V_EASES = 55  # by how much more a stem that closes, and (56) opens, gains speed with what pulls it above a speed [-]
+V_EASES_AT = 57  # and that speed [position/s]
+V_COUNT = 58
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

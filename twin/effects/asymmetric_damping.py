@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import (
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
+    V_EASES,
+    V_EASES_AT,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_SQUARED_S,
@@ -57,6 +59,22 @@ def _orifice_alike(c: Coefficients, values: Sequence[float]) -> None:
     _orifice(c, (values[0], values[0]))
 
 
+def _check_valve(way: int) -> Callable[[Coefficients, Sequence[float]], None]:
+    def write(c: Coefficients, values: Sequence[float]) -> None:
+        # What opens by the pressure across the damper, which its speed makes, lets by a part of what flows above that.
+        c.valve[V_EASES + way] += values[0]
+        c.valve[V_EASES_AT] = values[1] * c.design.rate_limit
+
+    return write
+
+
+def _eases(way: str) -> tuple[Parameter, Parameter]:
+    doc = f"how much more a pull adds to the speed {way} where that is higher than `above`, over what it adds below"
+    how = replace(_parameter("eases", doc), lower=0.0, upper=9.0, starts=(0.3, 1.5), scale=0.5)
+    where = replace(_parameter("above", "that speed over the design's highest"), lower=0.0, upper=0.9)
+    return how, replace(where, starts=(0.06, 0.2), scale=0.3, neutral=0.1, size=False)
+
+
 def _throttled(way: str) -> Parameter:
     how = way.replace("_", " ")
     doc = f"drag with the square of the speed {how}, at the design's highest speed, over that with the speed"
@@ -80,7 +98,8 @@ EFFECT = Effect(
     claim="The time constants closing and opening differ.",
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
     "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
-    "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit",
+    "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit; "
+    "check_valve: what dx/dt has above a speed, one way, times 1 + eases",
     source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967); "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (viscous friction)",
     forms=(
@@ -88,6 +107,8 @@ EFFECT = Effect(
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
         Form("orifice_each_way", (_throttled("closing"), _throttled("opening")), _orifice),
+        Form("check_valve_closing", _eases("closing"), _check_valve(0)),
+        Form("check_valve_opening", _eases("opening"), _check_valve(1)),
         # what holds the stem alike both ways is no asymmetry
         Form("orifice_alike", (_throttled("both_ways"),), _orifice_alike, outside=_ALIKE),
     ),

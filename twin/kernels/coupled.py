@@ -18,6 +18,8 @@ from twin.slots import (
     V_BREAKAWAY,
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
+    V_EASES,
+    V_EASES_AT,
     V_FADES_SQUARED,
     V_HELD,
     V_IN_MOTION,
@@ -154,6 +156,18 @@ def _moved(x: float, pulls: Pair, over: Pair, end: float, lag: Pair, drag: Pair)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _eased(x: float, new: float, pulls: Pair, h: float, c: FloatArray, way: int) -> float:
+    """Where a stem comes to that has a lag of its own above a speed, if it came to `new` below it."""
+    eases, lag_s = c[V_EASES + way], c[V_TAU_CLOSE_S + way]
+    if eases <= 0.0:
+        return new
+    nearer, lag = c[V_EASES_AT] * lag_s * eases / (1.0 + eases), _decay(h, lag_s / (1.0 + eases))
+    if way == 0:
+        return max(new, _toward(x, pulls[0] - nearer, pulls[1] - nearer, lag))
+    return min(new, _toward(x, pulls[0] + nearer, pulls[1] + nearer, lag))
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
 def _faded(quick: float, squared: bool) -> float:
     """What is left of the friction that falls with the speed, of which `quick` is the share of its own."""
     left: float = np.exp(-quick * (quick if squared else 1.0))
@@ -220,7 +234,7 @@ def coupled_steps(
             pulls = _left(after, x, short * fades + rubs), _left(new_after, x, short * fades + rubs)
             way = 0 if after + new_after > 2.0 * x else 1
             drag = _throttled(h, c, way, 0.5 * (pulls[0] + pulls[1] + over + new_over) - x, drags[way])
-            new = _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drag)
+            new = _eased(x, _moved(x, pulls, (over, new_over), ends[1 - way], lags[way], drag), pulls, h, c, way)
             new = max(lowest, min(highest, max(x - rates[1] * h, min(x + rates[0] * h, new))))
             if kept > 0.0:
                 slipped = abs(new_after - x) > kept

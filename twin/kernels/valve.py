@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.kernels.check_valve import eased_pass
 from twin.kernels.coupled import coupled_steps
 from twin.kernels.coupled_start import coupled_start
 from twin.kernels.dahl import dahl_target
@@ -31,6 +32,8 @@ from twin.slots import (
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
+    V_EASES,
+    V_EASES_AT,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
     V_HELD,
@@ -64,6 +67,7 @@ from twin.slots import (
 )
 
 _STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_KEPT, V_TAU_AFTER_S, V_ON_STEM, V_SQUARED_S, V_SQUARED_S + 1]
+_STIFF += [V_EASES, V_EASES + 1]
 _COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_KEPT, V_ON_STEM]
 _COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX, V_SQUARED_S, V_SQUARED_S + 1]
 #: A speed that follows within so short a time follows at once [s].
@@ -175,9 +179,13 @@ def move_stem(
     lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
     if c[V_INERTIA_S] > _AT_ONCE_S:
         inertia_pass(time_s, offsets, target, lags_s, rates, np.array([low, high]), c[V_INERTIA_S], state, out)
+        return
+    if c[V_EASES] > 0.0 or c[V_EASES + 1] > 0.0:
+        eases = (c[V_EASES], c[V_EASES + 1], c[V_EASES_AT])
+        eased_pass(time_s, offsets, target, lags_s, rates, (low, high), eases, state[0], out)
     else:
         stem_pass(time_s, offsets, target, lags_s, rates, low, high, state[0], out)
-        state[0] = out[-1]
+    state[0] = out[-1]
 
 
 def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:
