@@ -29,6 +29,7 @@ from twin.hearing import Hearing
 from twin.heldout import tied_note
 from twin.lateness import late_commands
 from twin.next.propose import propose
+from twin.noise.blurred import on_their_steps
 from twin.noise.copies import used_once
 from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Known, known_so_far
@@ -191,7 +192,9 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     noise = estimate_noise(recordings)
     if not repeats:
         noise = replace(noise, position=estimate_noise(recordings, repeats=False).position)
-    notes += admit(recordings, plant, noise)
+    recordings, blurred = on_their_steps(recordings, noise.position.sigma)
+    noise = estimate_noise(recordings) if blurred else noise
+    notes += [*blurred, *admit(recordings, plant, noise)]
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
     noise = noise_of_refreshed(recordings, noise)
     recordings, timing_notes, known.slack = settled_timing(recordings, plant, noise)

@@ -3,7 +3,7 @@
 A converter that lacks codes reads what belongs to them as the code below or above, which is an error of the zero too.
 Both are no fault of calibration besides; the zero error is put into the base model where the record fits it clearly
 better. Where the stem rests at a stop tells it best: there it is, whatever else is wrong with the valve. Missing codes
-show all along the travel, and not at a stop.
+show all along the travel, and not at a stop; sharp steps beside which the stop lies read it as one of two codes.
 """
 
 from __future__ import annotations
@@ -27,6 +27,8 @@ _CLEARLY = 0.8
 _NEARLY = 0.25
 #: Rows at a stop, within so many steps of it in model and reading, from which the stops alone decide.
 _ENOUGH, _AT_STOP = 50, 1.5
+#: Codes lie beside whole steps from so many steps on.
+_BESIDE = 0.1
 
 
 def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensing) -> tuple[Inserted, ...]:
@@ -42,7 +44,8 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
     lacking = rounding_bias(np.concatenate([r.position for r in recordings]), sensing.step)
     offs_in = [s * sensing.step for s in (0.0, -0.5, 0.5, -lacking, lacking)][: 5 if lacking > 0.0 else 3]
     options = [(Inserted("lvdt_calibration", form, (off_in,)),) if off_in else () for off_in in offs_in]
-    stops = _telling_rows(channel, plant, sensing.step) if lacking == 0.0 else []
+    told = lacking == 0.0 and not (sensing.sharp and _beside_zero(recordings, sensing.step))
+    stops = _telling_rows(channel, plant, sensing.step) if told else []
     if stops:
         # the model of another zero would start elsewhere, and stay there as long as the pressure lets it
         error = channel.residuals(plant)
@@ -54,6 +57,12 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
     best = min(range(len(options)), key=lambda k: misfits[k])
     near = (stops or lacking > 0.0) and abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
     return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
+
+
+def _beside_zero(recordings: Sequence[Recording], step: float) -> bool:
+    """Whether the codes lie beside zero and all whole steps from there."""
+    positions = np.concatenate([r.position[np.isfinite(r.position)] for r in recordings])
+    return abs(float(np.angle(np.mean(np.exp(2j * np.pi * positions / step))))) > 2.0 * np.pi * _BESIDE
 
 
 def _beyond(error: FloatArray, half: float) -> FloatArray:

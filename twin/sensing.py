@@ -83,7 +83,7 @@ class Sensing:
     @property
     def sharp(self) -> bool:
         """Whether the reading is in coarse steps, all of its codes occur, and it is new in every row."""
-        return "sensor_quantization" in self.accepted and self.uneven == 1.0 and not self.held
+        return "sensor_quantization" in self.accepted and self.uneven < 1.0 + 1e-9 and not self.held
 
     @property
     def held(self) -> bool:

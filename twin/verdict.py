@@ -28,6 +28,9 @@ _EVENT_PROBABILITY = 0.97
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave, or noise that takes
 #: readings over the edges of coarse steps: it does so with its cube, and how much of it there is hardly shows in them.
 MISSED = 4.0
+#: RMS beyond the edges of coarse steps, in steps, of twice the noise up to which they count as sharp: how much there is
+#: does not show where a display holds on to its code.
+_OVER_EDGES = 0.06
 #: Share of its step that a coarse reading keeps from flickering by.
 _FLICKER = 0.6
 #: Standard deviation of a size that comes from its form being a model, as a share of the size (docs/calibration.md).
@@ -83,8 +86,7 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
     Readings that are seen to be held, but at no fixed period, cannot be predicted, and are a cause all the same.
     """
     for decision in result.decisions:
-        hides = "sensor_dropouts" in sensing.accepted or decision.findings.channel.half > 0.0
-        if hides and decision.findings.none.mse < MISSED:
+        if _hidden(decision, sensing):
             continue
         if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
             continue
@@ -92,6 +94,14 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
         if wanting and not _minor(result, decision, ep_share):
             return True
     return False
+
+
+def _hidden(decision: Decision, sensing: Sensing) -> bool:
+    """Whether a gap is what false readings, or what noise carries over the edges of coarse steps, may add unseen."""
+    channel, mse = decision.findings.channel, decision.findings.none.mse
+    steps = channel.half > 0.0
+    over_edges = steps and np.sqrt(mse) * channel.sigma < _OVER_EDGES * 2.0 * channel.half
+    return over_edges or ((steps or "sensor_dropouts" in sensing.accepted) and mse < MISSED)
 
 
 def _minor(result: StageResult, decision: Decision, ep_share: float) -> bool:

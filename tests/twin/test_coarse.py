@@ -111,7 +111,14 @@ def test_the_stem_is_heard_within_the_steps_of_its_reading() -> None:
 
 
 @pytest.mark.parametrize(
-    ("half", "mse", "verdict"), [(0.03, 3.0, "no_gap"), (0.03, 5.0, "unexplained"), (0.0, 3.0, "unexplained")]
+    ("half", "mse", "verdict"),
+    [
+        (0.005, 3.0, "no_gap"),
+        (0.005, 5.0, "unexplained"),
+        (0.03, 15.0, "no_gap"),
+        (0.03, 150.0, "unexplained"),
+        (0.0, 3.0, "unexplained"),
+    ],
 )
 def test_what_is_beyond_the_edges_by_a_little_is_no_gap(half: float, mse: float, verdict: str) -> None:
     """How much noise takes readings over an edge hardly shows in them: it does so with its cube."""

@@ -80,3 +80,12 @@ def test_a_larger_zero_error_is_no_rounding() -> None:
     off = replace(recording, position=recording.position - 3.0 * STEP_IN)
     error = Plant(DESIGN, (Inserted("lvdt_calibration", effect("lvdt_calibration").form("zero"), (-3.0 * STEP_IN,)),))
     assert rounding_down([off], error, seen) == ()
+
+
+@pytest.mark.parametrize("place", [-0.45, 0.32, 0.45])
+def test_a_stop_beside_the_steps_does_not_say_how_they_round(place: float) -> None:
+    """It is read as the next code, which is nearly half a step away, and no zero error at all."""
+    recording, seen = coarse(down=False)
+    trial, _ = trial_of(Plant(DESIGN), np.concatenate([staircase(), np.repeat([3.0, 14.0], 400)]))
+    beside = replace(recording, position=STEP_IN * (np.round(trial.recording.position / STEP_IN - place) + place))
+    assert rounding_down([beside], Plant(DESIGN), seen) == ()

@@ -81,3 +81,12 @@ def fast_moving() -> Recording:
     recording = recorded()
     noise = np.random.default_rng(3).normal(0.0, SIGMA, recording.n)
     return replace(recording, position=recording.position + 0.1 * noise)
+
+
+@pytest.mark.parametrize("codes", range(20, 32))
+def test_steps_are_sharp_whatever_the_number_of_codes(codes: int) -> None:
+    """The error of rounding is a mean over the codes, which is a twelfth for all of them but for its last bit."""
+    fine = recorded()
+    step_in = float(np.ptp(fine.position)) / (codes - 1)
+    steps = replace(fine, position=step_in * np.round(fine.position / step_in))
+    assert sense([steps], estimate_noise([steps]), DESIGN.travel, DESIGN.rate_limit).sharp
