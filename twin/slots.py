@@ -51,7 +51,9 @@ EP_DRIFTS = 33  # by how much the zero moves in the end [pressure]
 EP_DRIFTS_S = 34  # and with which time constant, from the beginning of each recording [s]
 EP_STROKE = 35  # what a stroke of the stem takes from the pressure until air has come after it [pressure/position]
 EP_SUBSONIC = 36  # choked flow from a supply of EP_CLIP over what the lag takes [-]; 0: any flow
-EP_COUNT = 37
+EP_CLOG_UP = 37  # what a clogged passage adds to the lag of a rising pressure, for each unit of its slope [s2/pressure]
+EP_CLOG_DOWN = 38  # and of a falling one
+EP_COUNT = 39
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from math import exp, inf, log
+from math import exp, inf, log, sqrt
 
 import numpy as np
 import numpy.typing as npt
@@ -38,6 +38,8 @@ class PlainValve:
     leak: float = 0.0
     quick: float = 0.0  # further flow of an exhaust, and the error from which it flows
     crack: float = 0.0
+    clog_rise: float = 0.0  # by what share of itself the converter's lag grows for each psi/s, rising and falling
+    clog_fall: float = 0.0
     mixed: float = 0.0  # lag of the command as it comes out of the delay
     tank: float = inf  # a supply that sinks by 0.4 of every rise and comes back in 20 s
     cut_off: float = inf
@@ -119,6 +121,8 @@ class PlainValve:
     def _pressure(self, p: float, goal: float, step_s: float) -> float:
         tau = self.ep_tau * (self.rise if goal > p else self.fall)
         error = goal - p
+        clog = self.clog_rise if error > 0.0 else self.clog_fall
+        tau *= 0.5 + sqrt(0.25 + clog * abs(error) / tau)
         flow = error - max(-self.overlap, min(error, self.overlap)) + self.leak * error
         flow += self.quick * min(error + self.crack, 0.0)
         new = p + flow * (1.0 - exp(-step_s / tau))

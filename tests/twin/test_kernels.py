@@ -92,6 +92,8 @@ SAME = {
     "overlap": (plant_with("ep_deadband", "overlap", 0.3), PlainValve(overlap=0.3)),
     "dispersed": (plant_with("dead_time", "dispersed", 0.4, 0.5), PlainValve(delay=0.4, mixed=0.2)),
     "quick": (plant_with("fill_exhaust_asymmetry", "quick_exhaust", 1.5, 0.3), PlainValve(quick=1.5, crack=0.3)),
+    "clogged": (plant_with("fill_exhaust_asymmetry", "clogged", 0.3), PlainValve(clog_fall=0.3)),
+    "clogged_supply": (plant_with("fill_exhaust_asymmetry", "clogged", -0.3), PlainValve(clog_rise=0.3)),
     "leaking": (plant_with("ep_deadband", "overlap_leaking", 0.3, 0.1), PlainValve(overlap=0.3, leak=0.1)),
     "cut_off": (plant_with("supply_saturation", "cut_off", 10.5), PlainValve(cut_off=10.5)),
     "held_stem": (plant_with("stiction", "held_stem", 0.4, 4e-3), PlainValve(held=0.076, stick_speed=4e-3)),

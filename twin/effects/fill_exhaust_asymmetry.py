@@ -6,7 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import EP_CHAMBER, EP_CRACK, EP_PORT_DOWN, EP_PORT_UP, EP_QUICK, EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.slots import (
+    EP_CHAMBER,
+    EP_CLOG_DOWN,
+    EP_CLOG_UP,
+    EP_CRACK,
+    EP_PORT_DOWN,
+    EP_PORT_UP,
+    EP_QUICK,
+    EP_TAU_FALL_S,
+    EP_TAU_RISE_S,
+)
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
@@ -28,6 +38,21 @@ def _quick(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[[EP_QUICK, EP_CRACK]] = values
 
 
+def _clogged(c: Coefficients, values: Sequence[float]) -> None:
+    # A silencer full of dirt, or a screen, is turbulent: its pressure drop grows with the square of the flow.
+    c.ep[EP_CLOG_UP] += max(-values[0], 0.0) * c.design.ep_tau_s
+    c.ep[EP_CLOG_DOWN] += max(values[0], 0.0) * c.design.ep_tau_s
+
+
+_CLOG = Parameter(
+    name="clog",
+    kind="time_per_pressure",
+    lower=-6.0,
+    upper=6.0,
+    starts=(-0.8, -0.1, 0.1, 0.8),
+    scale=0.3,
+    doc="by what share the lag of the exhaust grows for each unit of the slope; negative: that of the supply",
+)
 _DIRT = Parameter(
     name="dirt",
     kind="fraction",
@@ -76,7 +101,8 @@ EFFECT = Effect(
     equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
     "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead; "
     "port_and_chamber: likewise, air of the booster times 1 + room, filling as from its supply (ISO 6358); "
-    "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens",
+    "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens; "
+    "clogged: tau (1 + clog |dp/dt|) dp/dt = u - p falling, or rising where it is negative",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
         Form(
@@ -103,6 +129,7 @@ EFFECT = Effect(
         ),
         Form("port_and_chamber", (_MUCH_DIRT, _ROOM), _port_and_chamber, by_pressure=True),
         Form("quick_exhaust", (_QUICK, _CRACK), _quick),
+        Form("clogged", (_CLOG,), _clogged),
     ),
     twins=("ep_rate_limit",),
     absorbs=("ep_tau",),

@@ -1,4 +1,4 @@
-"""The converter's lag with an overlap band, a quick exhaust, limited slopes, a supply that sinks: a compiled pass."""
+"""The converter's lag with an overlap band, a quick exhaust or a clog, limited slopes, a sinking supply: compiled."""
 
 from __future__ import annotations
 
@@ -13,6 +13,8 @@ from twin.slots import (
     EP_BAND,
     EP_BAND_MODE,
     EP_CLIP,
+    EP_CLOG_DOWN,
+    EP_CLOG_UP,
     EP_CRACK,
     EP_DRAW,
     EP_LEAK,
@@ -62,9 +64,20 @@ def _let_through(p: float, v: float, steps: float, c: FloatArray) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _clogged_step(error: float, tau_s: float, clog: float, h: float) -> float:
+    """What is left of an error that drives a flow q against tau q + clog q^2: a lag that grows with the flow, as it is
+    in the middle of the step."""
+    lag_s = 0.5 * (tau_s + np.sqrt(tau_s * tau_s + 4.0 * clog * error))
+    middle = error * np.exp(-0.5 * h / lag_s)
+    lag_s = 0.5 * (tau_s + np.sqrt(tau_s * tau_s + 4.0 * clog * middle))
+    left: float = error * np.exp(-h / lag_s)
+    return left
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
-    """Pressure after `h` seconds of a lag toward `v`, with an overlap band or a quick exhaust, and slope limits."""
-    mode, error = c[EP_BAND_MODE], abs(v - p)
+    """Pressure after `h` seconds of a lag toward `v`: with a band, a quick exhaust or a clog, and with slope limits."""
+    mode, error, clog = c[EP_BAND_MODE], abs(v - p), c[EP_CLOG_UP if v > p else EP_CLOG_DOWN]
     if mode == 4.0 and error <= c[EP_BAND]:
         return p
     rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
@@ -74,6 +87,8 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
         error = _edged_step(error, c[EP_BAND], c[EP_LEAK] * rate, rate, h)
     elif v < p and c[EP_QUICK] > 0.0:
         error = _edged_step(error, c[EP_CRACK], rate, c[EP_QUICK] * rate, h)
+    elif clog > 0.0:
+        error = _clogged_step(error, 1.0 / rate, clog, h)
     else:
         error *= np.exp(-rate * h)
     if mode == 4.0:

@@ -20,6 +20,8 @@ from twin.slots import (
     EP_BAND_MODE,
     EP_CHAMBER,
     EP_CLIP,
+    EP_CLOG_DOWN,
+    EP_CLOG_UP,
     EP_DEAD_S,
     EP_DRIFTS,
     EP_DRIFTS_S,
@@ -129,9 +131,9 @@ def through_ports(c: FloatArray) -> FloatArray:
 
 
 def bounded(c: FloatArray) -> bool:
-    """Whether the lag toward the goal is more than a lag: an overlap, a quick exhaust, a limit."""
+    """Whether the lag toward the goal is more than a lag: an overlap, a quick exhaust, a clogged passage, a limit."""
     limited = min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
-    return bool(limited or c[EP_BAND_MODE] >= 3.0 or c[EP_QUICK] > 0.0)
+    return bool(limited or c[EP_BAND_MODE] >= 3.0 or c[[EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN]].any())
 
 
 def boosted(c: FloatArray) -> bool:
