@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import replace
 
-from twin.diagnosis import Cause, Diagnosis
+from twin.catalog import effects
+from twin.diagnosis import Cause, Diagnosis, Estimate
 
 #: Up to so many times the noise an error is "as well as the noise allows".
 _LIKE = 1.3
+#: The names of numbers of which a curve has many.
+_KNOT = re.compile(r"_\d+$")
 
 
 def statement(diagnosis: Diagnosis) -> str:
@@ -38,15 +42,17 @@ def statement(diagnosis: Diagnosis) -> str:
     names = " and ".join(_named(cause) for cause in diagnosis.causes)
     closed = g.reducible_closed
     share = f", which closes {100.0 * closed.value:.3g} % of what noise does not account for" if closed else ""
-    what = "A design number is off" if diagnosis.verdict == "parameter" else "The design leaves something out"
+    off = "A design number is off" if len(diagnosis.causes) == 1 else "Design numbers are off"
+    what = off if diagnosis.verdict == "parameter" else "The design leaves something out"
     if closed is None and diagnosis.causes and all(c.stage == "ep" for c in diagnosis.causes):
         return (
             f"{what}: {names}. The measured pressure shows it; in this record it hardly moves the stem, whose error is "
-            f"{g.before:.2g} % of travel without it and {g.after:.2g} % with it (noise {g.noise_floor:.2g} %)."
+            f"{g.before:.2g} % of travel without and {g.after:.2g} % with that (noise {g.noise_floor:.2g} %)."
         )
+    them = "it" if len(diagnosis.causes) == 1 else "them"
     return (
-        f"{what}: {names}. With it the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel "
-        f"(noise {g.noise_floor:.2g} %){share}."
+        f"{what}: {names}. With {them} the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of "
+        f"travel (noise {g.noise_floor:.2g} %){share}."
     )
 
 
@@ -72,8 +78,28 @@ def _at_most(diagnosis: Diagnosis) -> str:
 
 
 def _named(cause: Cause) -> str:
-    sizes = ", ".join(
-        f"{name} {e.value:.3g} {'' if e.unit == '1' else e.unit}".rstrip() for name, e in cause.parameters.items()
-    )
+    """The cause with its sizes; numbers that only say how it goes are in the table."""
+    told = [f"{name} {_sized(e)}" for name, e in _sizes(cause).items()]
+    told += [f"up to {_sized(e)}" for e in _knots(cause).values()]
     plain = cause.name.removeprefix("parameter:")
-    return f"{plain} ({sizes}; probability {cause.probability:.2f})" if sizes else plain
+    return f"{plain} ({', '.join(told)}; probability {cause.probability:.2f})" if told else plain
+
+
+def _sized(one: Estimate) -> str:
+    return f"{one.value:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
+
+
+def _sizes(cause: Cause) -> Mapping[str, Estimate]:
+    """Of a cause's numbers those that say how large it is, all of them where none does; without those of `_knots`."""
+    effect = effects().get(cause.name)
+    form = next((f for f in effect.forms if f.name == cause.form), None) if effect is not None else None
+    shapes = {p.name for p in form.parameters if not p.size} if form is not None else set()
+    plain = {name: e for name, e in cause.parameters.items() if not _KNOT.search(name)}
+    return {name: e for name, e in plain.items() if name not in shapes} or (plain if not _knots(cause) else {})
+
+
+def _knots(cause: Cause) -> Mapping[str, Estimate]:
+    """The largest of the numbers of a curve that is given by many (`zero_1`, `zero_2`, ...)."""
+    many = {name: e for name, e in cause.parameters.items() if _KNOT.search(name)}
+    largest = max(many, key=lambda name: abs(many[name].value), default=None)
+    return {} if largest is None else {largest: many[largest]}

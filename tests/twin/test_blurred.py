@@ -58,6 +58,10 @@ def test_readings_at_rest_crowd_without_steps() -> None:
     assert blurred_step([rests], 1e-4) == (0.0, 0.0)
 
 
+def test_readings_without_noise_are_left_alone() -> None:
+    assert blurred_step([read(0.0, step_in=0.0)], 1e-18) == (0.0, 0.0)
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize(("step_in", "noise"), [(0.008, 0.1), (0.012, 0.08)])
 def test_a_digital_gauge_behind_an_analog_line_is_a_coarse_one(step_in: float, noise: float) -> None:

@@ -18,6 +18,8 @@ from logs.recording import DataNote, FloatArray, Recording
 _MOVES, _WITHIN_S = 8.0, 0.15
 #: A step is so many of these at least, so that every reading belongs to one; and so many steps are in what was read.
 _LEAST, _STEPS = 9.0, 12
+#: Noise below this share of what was read is none, as of a simulation.
+_FINEST = 1e-5
 #: Rows in motion that are asked for, and the mean resultant length about the steps, in each half of them.
 _ROWS, _CROWDED = 300, 0.6
 
@@ -43,6 +45,7 @@ def blurred_step(recordings: Sequence[Recording], sigma: float) -> tuple[float, 
     span = float(np.ptp(moving)) if moving.size >= _ROWS else 0.0
     if sigma <= 0.0 or span < _STEPS * _LEAST * sigma:
         return 0.0, 0.0
+    sigma = max(sigma, _FINEST * span)
     bins = int(np.ceil(4.0 * span / sigma))
     counts = np.histogram(moving, bins, (moving.min(), moving.max() + 1e-12 * span))[0]
     per_span = np.arange(4 * bins // 2 + 1) / 4.0  # steps in the span, for a transform padded to four times its length

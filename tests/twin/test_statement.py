@@ -1,0 +1,40 @@
+"""The sentence that an operator reads first: sizes, and not every number of a form."""
+
+from __future__ import annotations
+
+import pytest
+
+from twin.diagnosis import Cause, Diagnosis, Estimate, Gap
+from twin.statement import statement
+
+GAP = Gap(3.0, 2.0, 0.12, 0.11, None)
+
+
+def one(name: str, form: str, **numbers: float) -> Cause:
+    found = {
+        key: Estimate(value, (value, value), "in" if key.startswith("zero") else "1") for key, value in numbers.items()
+    }
+    return Cause(name, "actuator", 0.9, None, found, form)
+
+
+def said(*causes: Cause) -> str:
+    return statement(Diagnosis("effects" if len(causes) > 1 else "effect", "", causes, (), GAP))
+
+
+def test_a_curve_of_many_numbers_is_said_by_its_largest() -> None:
+    words = said(one("lvdt_drift", "wander", zero_1=0.001, zero_2=-0.044, zero_10=0.02))
+    assert "lvdt_drift (up to -0.044 in; probability 0.90)" in words
+
+
+def test_what_only_says_how_it_goes_is_left_to_the_table() -> None:
+    assert "creep (share 0.2; probability" in said(one("creep", "one_tail", share=0.2, tail=20.0))
+    assert "tail" not in said(one("creep", "one_tail", share=0.2, tail=20.0))
+
+
+def test_a_cause_that_was_seen_in_the_readings_keeps_its_numbers() -> None:
+    assert "sensor_dropouts (rate 0.01; probability" in said(one("sensor_dropouts", "", rate=0.01))
+
+
+@pytest.mark.parametrize(("count", "word"), [(1, "With it the error"), (2, "With them the error")])
+def test_one_cause_is_it_and_more_are_them(count: int, word: str) -> None:
+    assert word in said(*[one("creep", "one_tail", share=0.2), one("stiction", "one_jump", breakaway=0.3)][:count])
