@@ -18,7 +18,9 @@ EP_DEAD_S = 0  # pure delay [s]
 EP_GAIN = 1  # static gain [-]
 EP_ZERO = 2  # zero error [pressure]
 EP_BAND = 3  # half width of the ignored band [pressure]
-EP_BAND_MODE = 4  # 0 none, 1 hold, 2 play, 3 overlap (flow from the edge), 4 overlap (full flow outside)
+EP_BAND_MODE = (
+    4  # 0 none, 1 hold, 2 play, 3 overlap (flow from the edge), 4 overlap (full flow outside), 5 open until EP_SHUT
+)
 EP_TAU_RISE_S = 5
 EP_TAU_FALL_S = 6
 EP_RATE_UP = 7  # [pressure/s]
@@ -53,7 +55,8 @@ EP_STROKE = 35  # what a stroke of the stem takes from the pressure until air ha
 EP_SUBSONIC = 36  # choked flow from a supply of EP_CLIP over what the lag takes [-]; 0: any flow
 EP_CLOG_UP = 37  # what a clogged passage adds to the lag of a rising pressure, for each unit of its slope [s2/pressure]
 EP_CLOG_DOWN = 38  # and of a falling one
-EP_COUNT = 39
+EP_SHUT = 39  # error at which a pilot that has opened shuts again, as a share of EP_BAND (EP_BAND_MODE 5) [-]
+EP_COUNT = 40
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -165,7 +168,9 @@ S_NATURAL_S = S_THRICE_S + 1  # of a filter of second order: 1 / natural frequen
 S_DAMPING = S_NATURAL_S + 1  # and its damping ratio, below 1
 S_MASS_NATURAL_S = S_DAMPING + 1  # the same of a mass on a spring between the stem and the sensor
 S_MASS_DAMPING = S_MASS_NATURAL_S + 1
-S_COUNT = S_MASS_DAMPING + 1
+S_KINK = S_MASS_DAMPING + 1  # excess where two straight halves of the reading meet [fraction of travel]
+S_KINK_AT = S_KINK + 1  # and where that is [fraction of travel]
+S_COUNT = S_KINK_AT + 1
 
 FOREVER = 1e30
 

@@ -68,6 +68,10 @@ def curved(x: float, _t: float) -> float:
     return x + TRAVEL * 0.02 * 4.0 * (x / TRAVEL) * (1.0 - x / TRAVEL)
 
 
+def kinked(x: float, _t: float) -> float:
+    return x + TRAVEL * 0.02 * min(x / TRAVEL / 0.7, (1.0 - x / TRAVEL) / 0.3)
+
+
 WAVE = tuple(0.01 * np.sin(0.2 * np.pi * np.arange(1, 11)))  # one period over the 59.9 s
 
 
@@ -120,6 +124,7 @@ SAME = {
     "lower_stop": (plant_with("reduced_travel", "lower_stop", 0.1), PlainValve(low=0.1 * TRAVEL)),
     "lvdt_gain": (plant_with("lvdt_calibration", "gain_and_zero", 0.03, 0.01), PlainValve(reading=steeper)),
     "lvdt_bow": (plant_with("lvdt_nonlinearity", "bow", 0.02), PlainValve(reading=curved)),
+    "lvdt_kink": (plant_with("lvdt_nonlinearity", "kink", 0.02, 0.7), PlainValve(reading=kinked)),
     "lvdt_drift": (plant_with("lvdt_drift", "linear", 2e-4), PlainValve(reading=lambda x, t: x + 2e-4 * t)),
     "lvdt_root": (plant_with("lvdt_drift", "root", 0.3), PlainValve(reading=lambda x, t: x + 0.3 * (t / 810.0) ** 0.5)),
     "lvdt_table": (plant_with("lvdt_nonlinearity", "table", *TABLE), PlainValve(reading=tabled)),

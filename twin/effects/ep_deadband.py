@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Apply, Coefficients, Effect, Form, Parameter
-from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK
+from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400
@@ -45,6 +46,24 @@ def _shut(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_CHAMBER] = 1.0 + values[1] if values[0] > 0.0 else 0.0
 
 
+def _gated(c: Coefficients, values: Sequence[float]) -> None:
+    _mode(5.0)(c, values)
+    c.ep[EP_SHUT] = values[1]
+
+
+#: In which step it opens depends on the band, but not on all that came before: a pilot that has shut has forgotten.
+_LATCH = replace(_band("pressure error at which the pilot opens in full", False)[0], looks=100)
+_SHUTS = Parameter(
+    name="shuts",
+    kind="fraction",
+    lower=0.02,
+    upper=0.95,
+    starts=(0.25, 0.6),
+    scale=0.3,
+    doc="error at which it shuts again, as a share of that",
+    neutral=0.5,
+    size=False,
+)
 _LEAK = Parameter(
     name="leak",
     kind="fraction",
@@ -74,6 +93,7 @@ EFFECT = Effect(
     claim="The converter ignores command changes inside a band.",
     equations="hold: the goal v follows u when |u - v| > band; play: v = max(u - band, min(u + band, v)); "
     "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full); "
+    "latched: in full from |u - p| = band until shuts band; "
     "overlap_and_chamber: likewise, air of the booster times 1 + room; "
     "overlap_leaking: tau dp/dt = e - max(-band, min(e, band)) + leak e, e = u - p",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5 (overlapped valves); IEC 61298-2 (dead band)",
@@ -93,6 +113,7 @@ EFFECT = Effect(
             by_pressure=True,
         ),
         Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
+        Form("overlap_latched", (_LATCH, _SHUTS), _gated),
     ),
     erratic=True,
 )

@@ -11,6 +11,8 @@ from twin.slots import (
     S_BOW,
     S_FROM,
     S_GAIN,
+    S_KINK,
+    S_KINK_AT,
     S_LEAVES,
     S_OTHER,
     S_SWING,
@@ -132,6 +134,21 @@ def _leaves_both(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_LEAVES, S_OTHER, S_FROM]] = values[0], values[1], 0.5 + 0.5 * values[2]
 
 
+def _kink(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_KINK, S_KINK_AT]] = values
+
+
+_AT = Parameter(
+    name="at",
+    kind="fraction",
+    lower=0.05,
+    upper=0.95,
+    starts=(0.3, 0.7),
+    scale=0.2,
+    doc="position at which they meet, fraction of travel",
+    neutral=0.5,
+    size=False,
+)
 _ENTRIES = tuple(
     _parameter(
         f"at_{round(100 * k / (TABLE + 1))}",
@@ -157,7 +174,7 @@ EFFECT = Effect(
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
     "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: u^3 - line u; leaves_range_*: "
     "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there; "
-    "table: straight between entries",
+    "kink: straight from 0 at both ends to the bend; table: straight between entries",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -170,6 +187,7 @@ EFFECT = Effect(
         Form("leaves_range_closed", _leaving("closed"), _leaves_closed),
         Form("leaves_range_open", _leaving("open"), _leaves_open),
         Form("leaves_range_both", (_bend("closed"), _other_bend(), _middle()), _leaves_both),
+        Form("kink", (_parameter("bend", "excess where two straight halves meet, fraction of travel"), _AT), _kink),
         Form("table", _ENTRIES, _table, _uneven),
     ),
     twins=("nonlinear_spring", "flow_force"),

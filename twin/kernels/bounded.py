@@ -22,6 +22,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_REFILL_S,
+    EP_SHUT,
     EP_SUBSONIC,
     EP_TANK,
     EP_TAU_FALL_S,
@@ -99,25 +100,38 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _gated_step(p: float, v: float, h: float, c: FloatArray, state: FloatArray) -> float:
+    """Pressure after `h` seconds of a pilot that opens in full at an error of the band, and shuts at a part of it."""
+    shut = c[EP_SHUT] * c[EP_BAND]
+    if abs(v - p) <= (shut if state[1] > 0.0 else c[EP_BAND]):
+        state[1] = 0.0
+        return p
+    new = _bounded_step(p, v, h, c)
+    state[1] = 1.0 if abs(v - new) > shut else 0.0
+    return new if state[1] > 0.0 else (v - shut if v > p else v + shut)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def follow_bounded(
     time_s: FloatArray,
     offsets: np.ndarray,
     goal: FloatArray,
     c: FloatArray,
     p0: float,
-    sunk: FloatArray,
+    state: FloatArray,
     out: FloatArray,
 ) -> None:
-    """A lag toward the goal with an overlap band and limited slope; `sunk[0]`: how far the supply has sunk, kept."""
+    """A lag toward the goal with an overlap band and limited slope; kept: `state` (2,), how far the supply has sunk and
+    whether a pilot that shuts later than it opens is open."""
     per_row = goal.size == time_s.size
     p = p0
     out[0] = p
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            v = min(goal[i] if per_row else goal[f], c[EP_TANK] - sunk[0])
-            new = _bounded_step(p, v, h, c)
+            v = min(goal[i] if per_row else goal[f], c[EP_TANK] - state[0])
+            new = _gated_step(p, v, h, c, state) if c[EP_BAND_MODE] == 5.0 else _bounded_step(p, v, h, c)
             if c[EP_TANK] < FOREVER:
-                sunk[0] = sunk[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
+                state[0] = state[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
             p = new
             out[f] = p

@@ -67,7 +67,7 @@ def ep_kernel(
         where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
         booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
     elif bounded(c):
-        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(1), out)
+        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(2), out)
     else:
         follow(time_s, offsets, goal, c, p0, out)
     if c[EP_STROKE] != 0.0 and stem is not None:

@@ -33,6 +33,8 @@ from twin.slots import (
     S_HOLD_S,
     S_JUMP,
     S_JUMP_S,
+    S_KINK,
+    S_KINK_AT,
     S_KNOTS,
     S_LAG2_S,
     S_LAG3_S,
@@ -143,7 +145,7 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
 
 def curved(c: FloatArray) -> bool:
     """Whether the reading is anything but proportional to the position."""
-    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER]].any() or c[_TABLE].any())
+    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER, S_KINK]].any() or c[_TABLE].any())
 
 
 def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
@@ -155,6 +157,8 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
         bend = bend + c[S_LEAVES] * np.square(np.maximum(way, 0.0) / reach)
     if c[S_OTHER] != 0.0:
         bend = bend + c[S_OTHER] * np.square(np.maximum(1.0 - c[S_FROM] - xi, 0.0) / (1.0 - c[S_FROM]))
+    if c[S_KINK] != 0.0:
+        bend = bend + c[S_KINK] * np.minimum(xi / c[S_KINK_AT], (1.0 - xi) / (1.0 - c[S_KINK_AT]))
     if c[_TABLE].any():
         bend = bend + np.interp(xi, np.linspace(0.0, 1.0, TABLE + 2), np.concatenate([[0.0], c[_TABLE], [0.0]]))
     return np.asarray(c[S_TRAVEL] * bend)

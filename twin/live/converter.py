@@ -53,7 +53,7 @@ class Converter:
         self._began_s = time_s
         self._bounded = bounded(c)
         self._aim, self._ringing = p0, np.array([p0, 0.0])
-        self._sunk = np.zeros(1)
+        self._bound = np.zeros(2)
         self._booster = np.array([p0, p0, 0.0]) if boosted(c) else None
         self._plain, self._filled = p0, math.nan  # the pressure but for the stroke; see `struck`
 
@@ -67,7 +67,7 @@ class Converter:
         if self._booster is not None:
             booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
         elif self._bounded:
-            follow_bounded(time_s, offsets, goal, self._c, self._plain, self._sunk, out)
+            follow_bounded(time_s, offsets, goal, self._c, self._plain, self._bound, out)
         else:
             follow(time_s, offsets, goal, self._c, self._plain, out)
         self._plain = float(out[-1])
