@@ -25,7 +25,7 @@ def hold(session: Session, steps: Iterable[tuple[float, float | None]], period_s
     bench, clock = session.bench, session.clock
     tick_s = max(_TICK_S, bench.info.min_period_s)
     click.echo(header(bench.info.command_unit))
-    began_s = clock.now_s()
+    began_s, warned = clock.now_s(), False
     due_s = shown_s = began_s
     for command, hold_s in steps:
         until_s = float("inf") if hold_s is None else due_s + hold_s
@@ -33,6 +33,9 @@ def hold(session: Session, steps: Iterable[tuple[float, float | None]], period_s
             stop.check()
             clock.sleep_until(due_s)
             sample = bench.exchange(command)
+            if sample.foreign_psi is not None and not warned:
+                unit, warned = bench.info.command_unit, True
+                click.echo(f"the device held {sample.foreign_psi:.4g} {unit}: does somebody else command it?", err=True)
             if sample.time_s >= shown_s:
                 click.echo(line(sample, began_s))
                 shown_s += period_s

@@ -154,6 +154,9 @@ class Loop:
             self._say_some("missing", f"no trusted reply: {fault}")
             self._count_missing(fault)
             return sample
+        if sample.foreign_psi is not None:
+            held = f"the device held {sample.foreign_psi:.4g} {self.bench.info.command_unit}, not what it was sent"
+            self._say_some("foreign command", f"{held}: does somebody else command it?")
         if sample.position.quality & Quality.MISSING:
             self._say_some("missing", "no trusted reply in this tick")
             self.missing += 1

@@ -14,11 +14,13 @@ Replies = list[tuple[Block, Reply | None]]
 _CORE = ("position", "pressure", "readback", "sequence")
 
 
-def assemble(commanded: float | None, time_s: float, replies: Replies, freshness: Freshness) -> Sample:
+def assemble(
+    commanded: float | None, time_s: float, replies: Replies, freshness: Freshness, foreign: float | None = None
+) -> Sample:
     """The sample of a tick whose write happened at `time_s`; an answer that is None makes its signals MISSING.
 
     The sequence number vouches for the block it came in, and for no other. Without a command (`commanded` None) the
-    read-back takes its place, NaN where there is none.
+    read-back takes its place, NaN where there is none. `foreign`: see `Sample.foreign_psi`.
     """
     found: dict[str, Reading] = {}
     for block, reply in replies:
@@ -39,6 +41,7 @@ def assemble(commanded: float | None, time_s: float, replies: Replies, freshness
         position=found["position"],
         pressure=found.get("pressure"),
         readback_psi=readback,
+        foreign_psi=foreign,
         sequence=None if sequence is None else int(sequence),
         aux={name: reading for name, reading in found.items() if name not in _CORE},
     )

@@ -21,6 +21,7 @@ from hal.readback import ReadbackCheck
 from hal.reopen import Reopening
 from hal.reply import Bus, Reply
 from hal.sample import Quality, Sample
+from hal.second_master import SecondMaster
 from hal.tick import min_period_s, plan_tick
 from hal.watchdog import WatchdogControl, check_status
 
@@ -54,8 +55,7 @@ class ModbusBench:
         reopening: Reopening | None = None,
     ) -> None:
         if pacing is not None:
-            serial = profile.serial.model_copy(update={"pacing": pacing})
-            profile = profile.model_copy(update={"serial": serial})
+            profile = profile.paced(pacing)
         self.profile = profile
         self.bus = bus or make_bus(profile, port, clock, backend=backend or profile.serial.backend, margin_s=margin_s)
         self._port = port
@@ -68,6 +68,7 @@ class ModbusBench:
         self._lock = threading.RLock()  # the dead man's thread may send the valve to safety in the middle of a tick
         self._identity: dict[str, str] = {}
         self._readback = ReadbackCheck(profile, self._plan, port)
+        self._others = SecondMaster(self._plan, self._watchdog, self._readback)
         self._reopening = reopening or Reopening()
         self._open = False
         self._armed = False
@@ -158,18 +159,16 @@ class ModbusBench:
             raise BadInput(f"command {command_psi} is not a number that a valve can be given")
         if not self._armed:
             self.arm()
-        words = self._plan.command.to_words(command_psi, self._plan.device.word_order)
-        commanded = self._plan.command.value(self._plan.command.counts(words, self._plan.device.word_order))
+        words, commanded = self._plan.sending(command_psi)
         with self._lock:
+            foreign = self._others.look(self._clock.now_s(), self._try)
             began_s = self._clock.now_s()
-            blocks = self._plan.blocks
             written = self._try(self._plan.write_request(words))
-            replies: Replies = []
-            if self._plan.joint is not None:
-                replies.append((self._plan.joint, written))
+            self._others.sent(commanded if written else None)
+            replies: Replies = [] if self._plan.joint is None else [(self._plan.joint, written)]
             # Without a confirmed command nobody knows what the readings answer to: the tick is missing as a whole.
-            replies += [(block, self._try(block.request()) if written else None) for block in blocks]
-            sample = assemble(commanded, written.midpoint_s if written else began_s, replies, self._freshness)
+            replies += [(block, self._try(block.request()) if written else None) for block in self._plan.blocks]
+            sample = assemble(commanded, written.midpoint_s if written else began_s, replies, self._freshness, foreign)
             self._check(sample)
             return sample
 
@@ -216,9 +215,11 @@ class ModbusBench:
             return self.vent() or taken_over
 
     def _send_safe(self) -> bool:
-        words = self._plan.command.to_words(self.profile.safe_command, self._plan.device.word_order)
+        words, safe = self._plan.sending(self.profile.safe_command)
         with self._lock:
+            self._others.sent(None)
             self.bus.transact(self._plan.write_request(words), retries=1)
+            self._others.sent(safe)
             readback = self.observe().readback_psi
         if self.profile.signals.readback is None:
             return True

@@ -165,6 +165,10 @@ class Profile(Part):
             return register.table
         return "holding" if self.device_of(register).read_fc == 3 else "input"
 
+    def paced(self, pacing: str) -> Self:
+        """The same bench with another pacing of its line."""
+        return self.model_copy(update={"serial": self.serial.model_copy(update={"pacing": pacing})})
+
     @property
     def command_unit(self) -> str:
         return self.signals.command.unit or "psi"

@@ -1,4 +1,7 @@
-"""Does the device hold the command that it was sent? A read-back that differs again and again means another master."""
+"""Does the device hold the command that it was sent? A read-back that differs again and again means another master.
+
+Where function 23 writes before it reads, `hal.second_master` looks as well.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,8 @@ class ReadbackCheck:
 
     def __init__(self, profile: Profile, plan: TickPlan, where: str) -> None:
         self.tolerance = _tolerance(profile, plan)  # in the command's unit
-        self._unit = profile.command_unit
-        self._where = where
+        self.unit = profile.command_unit
+        self.where = where
         self._mismatches = 0
 
     def judge(self, commanded: float, held: float | None) -> None:
@@ -25,8 +28,8 @@ class ReadbackCheck:
         self._mismatches = self._mismatches + 1 if abs(held - commanded) > self.tolerance else 0
         if self._mismatches >= _MISMATCHES:
             raise SafetyTrip(
-                f"the device on {self._where} was sent {commanded:.4g} {self._unit} and holds "
-                f"{held:.4g} {self._unit}, {_MISMATCHES} ticks in a row: does somebody else command it?"
+                f"the device on {self.where} was sent {commanded:.4g} {self.unit} and holds "
+                f"{held:.4g} {self.unit}, {_MISMATCHES} ticks in a row: does somebody else command it?"
             )
 
 

@@ -35,6 +35,7 @@ class Sample:
 
     `commanded_psi` is the command that this exchange wrote (after limits); it is in force from `time_s` on.
     `readback_psi` is the command register as the device holds it after the write, where the device can tell.
+    `foreign_psi` is what it held just before, where that was looked at and was not what it had been sent last.
     `pressure` is None on a bench without a pressure reading. `aux` holds extra channels by name (supply_psi, ...).
     """
 
@@ -43,5 +44,6 @@ class Sample:
     position: Reading
     pressure: Reading | None = None
     readback_psi: float | None = None
+    foreign_psi: float | None = None
     sequence: int | None = None
     aux: Mapping[str, Reading] = field(default_factory=dict)

@@ -37,6 +37,12 @@ class TickPlan:
     command: Register
     joint: Block | None
     blocks: tuple[Block, ...]  # the others
+    held: Block | None = None  # the read-back alone
+
+    def sending(self, command: float) -> tuple[tuple[int, ...], float]:
+        """The words that carry a command, and the command that they really are."""
+        words = self.command.to_words(command, self.device.word_order)
+        return words, self.command.value(self.command.counts(words, self.device.word_order))
 
     def write_request(self, words: tuple[int, ...]) -> Request:
         """The request that carries the command, and brings `joint` where there is one."""
@@ -65,7 +71,9 @@ def plan_tick(profile: Profile) -> TickPlan:
     if device.fc23:
         joint = next((b for b in blocks if b.device == device and b.function == 3), None)
     others = tuple(block for block in blocks if block is not joint)
-    return TickPlan(device, profile.wire_address(command), command, joint, others)
+    readback = {name: register for name, register in wanted.items() if name == "readback"}
+    held = next(iter(_blocks(profile, readback.items())), None)
+    return TickPlan(device, profile.wire_address(command), command, joint, others, held)
 
 
 def _blocks(profile: Profile, registers: Iterable[tuple[str, Register]]) -> tuple[Block, ...]:

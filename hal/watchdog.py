@@ -14,10 +14,15 @@ from hal.sample import Reading
 def check_status(status: Reading | None, where: str) -> None:
     """Raises: `SafetyTrip` when the device at `where` says in a tick that it has taken over."""
     if status is not None and not status.quality & NO_VALUE and status.value != 0:
-        raise SafetyTrip(
-            f"the device on {where} has put its output to the safe value (status {status.value:g}): it heard "
-            "nothing for too long, or an emergency stop; look at the valve, then `lostmotion set --acknowledge`"
-        )
+        raise taken_over(where, f" (status {status.value:g})")
+
+
+def taken_over(where: str, status: str = "") -> SafetyTrip:
+    """The sentence for a device that obeys nobody any more."""
+    return SafetyTrip(
+        f"the device on {where} has put its output to the safe value{status}: it heard "
+        "nothing for too long, or an emergency stop; look at the valve, then `lostmotion set --acknowledge`"
+    )
 
 
 class WatchdogControl:
