@@ -24,6 +24,8 @@ def hold(session: Session, steps: Iterable[tuple[float, float | None]], period_s
 
     bench, clock = session.bench, session.clock
     tick_s = max(_TICK_S, bench.info.min_period_s)
+    if session.calibration_warning is not None:
+        click.echo(f"warning: {session.calibration_warning}", err=True)
     click.echo(header(bench.info.command_unit))
     began_s, warned = clock.now_s(), False
     due_s = shown_s = began_s

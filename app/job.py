@@ -62,15 +62,13 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     """
     from app.console import KeyboardNotes, RunDisplay
     from control.loop import Hooks, Loop
-    from control.row import columns_of
     from control.supervise import supervised
     from hal.signals import stop_signals
     from logs.writer import RunWriter
     from sim_device.sealed import write as write_commitment
 
     _check_watchdogs(session, job.plan.period_s)
-    columns = columns_of(session.bench.info, closed_loop=job.closed_loop, aux_units=session.aux_units)
-    columns |= job.beside.columns if job.beside is not None else {}
+    columns = _columns(session, job)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
         record = stack.enter_context(RunWriter.create(out, _start(session, job), columns))
@@ -81,6 +79,7 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
             view = _open_view(record, columns)
             stack.callback(view.close)
             sinks.append(view)
+        _warn(session, sinks)
         display = stack.enter_context(RunDisplay(title))
         notes = KeyboardNotes()
         stack.callback(notes.close)
@@ -94,6 +93,22 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
             _say_stopped(loop.rows, job.kind, record.folder)
             raise
     return Finished(record.folder, outcome)
+
+
+def _columns(session: Session, job: Job) -> dict[str, str]:
+    from control.row import columns_of
+
+    columns = columns_of(session.bench.info, closed_loop=job.closed_loop, aux_units=session.aux_units)
+    return columns | dict(job.beside.columns if job.beside is not None else {})
+
+
+def _warn(session: Session, sinks: Sequence[Sink]) -> None:
+    """What the operator and the record have to know before the first move."""
+    text = session.calibration_warning
+    if text is not None:
+        echo(f"warning: {text}", err=True)
+        for sink in sinks:
+            sink.event(0.0, "warning", text)
 
 
 def _say_stopped(rows: int, kind: str, folder: Path) -> None:

@@ -50,6 +50,14 @@ class Session:
         return self.bench.info.safe_command if held is None else float(held)
 
     @property
+    def calibration_warning(self) -> str | None:
+        """One sentence, where the positions that the bench will tell rest on an expired calibration."""
+        from hal.clock import utc_now
+
+        calibration = self.profile.calibration
+        return None if calibration is None else calibration.warning(utc_now().date())
+
+    @property
     def title(self) -> str:
         """The bench in a few words for the operator."""
         port = self.bench.info.port

@@ -45,6 +45,14 @@ class Calibration(BaseModel):
     def expired(self, today: date) -> bool:
         return self.expires is not None and today > self.expires
 
+    def warning(self, today: date) -> str | None:
+        """One sentence for who is about to rely on positions; None while the calibration counts."""
+        if not self.expired(today):
+            return None
+        return (
+            f"calibration '{self.id}' expired on {self.expires}: positions may be off; `lostmotion calibrate` renews it"
+        )
+
 
 def _interpolate(x: Sequence[float], y: Sequence[float], at: float) -> float:
     if x[0] > x[-1]:

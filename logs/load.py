@@ -49,10 +49,10 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
     names = [name for name in run.columns if not name.startswith("next_")]
     columns = assign(names, _as_we_name_them(names), where)
     stated = {role: run.units.get(column.header) or column.unit for role, column in columns.items()}
-    notes: tuple[DataNote, ...] = ()
+    notes = _expired(run.start)
     if "pressure" in columns and plain_name(stated["command"]) == PERCENT != plain_name(stated["pressure"]):
         # A positioner is told a position; its command and a pressure have no unit in common.
-        notes = (DataNote("the command is a position in percent", "the pressure is left out of the recording"),)
+        notes += (DataNote("the command is a position in percent", "the pressure is left out of the recording"),)
         del columns["pressure"], stated["pressure"]
     signals = Signals(
         values={role: run.columns[column.header] for role, column in columns.items()},
@@ -71,6 +71,19 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
         "problems": run.problems,
     }
     return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)
+
+
+def _expired(start: Mapping[str, object]) -> tuple[DataNote, ...]:
+    """A note where the run's calibration had expired on the day of the run."""
+    profile = start.get("profile")
+    calibration = profile.get("calibration") if isinstance(profile, Mapping) else None
+    if not isinstance(calibration, Mapping):
+        return ()
+    until = calibration.get("expires")
+    if not isinstance(until, str) or str(start.get("utc", ""))[:10] <= until:  # both are ISO dates
+        return ()
+    what = f"calibration '{calibration.get('id')}' had expired on {until}, before this was recorded"
+    return (DataNote(what, "positions are kept as they are"),)
 
 
 def _as_we_name_them(names: Sequence[str]) -> dict[Role, str]:
