@@ -11,13 +11,11 @@ from pydantic import Field, ValidationError, model_validator
 from hal.calibration import Calibration
 from hal.device import Device
 from hal.errors import BadInput
+from hal.profile_checks import check_command, check_registers
+from hal.profile_words import not_finite, sentence
 from hal.register import Part, Register, Verified
 
 FOLDER = Path(__file__).parent / "profiles"
-_HINTS = {
-    "extra_forbidden": "unknown key; remove it or correct its spelling",
-    "missing": "missing; add it",
-}
 
 
 class Serial(Part):
@@ -103,8 +101,7 @@ class Profile(Part):
 
     @model_validator(mode="after")
     def _check(self) -> Self:
-        for name, register in self.every_register().items():
-            self._check_register(name, register)
+        check_registers(self)
         ids = [device.id for device in self.devices.values()]
         if len(set(ids)) != len(ids):
             raise ValueError(f"devices: unit id {ids[0]} is given twice on one line")
@@ -114,25 +111,13 @@ class Profile(Part):
             raise ValueError(f"signals.position is in '{self.signals.position.unit}': a [calibration] to in is needed")
         if self.signals.pressure is not None and self.signals.pressure.unit != "psi":
             raise ValueError(f"signals.pressure.unit is '{self.signals.pressure.unit}': it must come out in psi")
-        self._check_command_fits()
+        check_command(self)
         return self
-
-    def _check_register(self, name: str, register: Register) -> None:
-        if register.device not in self.devices and (register.device or len(self.devices) > 1):
-            raise ValueError(f"{name}.device '{register.device}' is not one of {', '.join(self.devices)}")
-        if register.address < self.device_of(register).address_base:
-            raise ValueError(f"{name}.address 0 does not exist on a device with address_base = 1")
-
-    def _check_command_fits(self) -> None:
-        for end in (self.limits.command_min, self.limits.command_max):
-            try:
-                self.signals.command.to_words(end, "ABCD")
-            except ValueError as error:
-                raise ValueError(f"signals.command cannot carry the command limit {end:g}: {error}") from error
 
     def every_register(self) -> dict[str, Register]:
         """Every register by its place in the file, those of the watchdogs included."""
-        found = {f"signals.{name}": register for name, register in self.signals.named().items()}
+        aux = self.signals.aux
+        found = {f"signals.{'aux.' * (name in aux)}{name}": each for name, each in self.signals.named().items()}
         for name, device in self.devices.items():
             for key in ("timeout", "enable", "status", "safe_value", "emergency"):
                 register = getattr(device.watchdog, key, None) if device.watchdog else None
@@ -211,11 +196,10 @@ def load_profile(path_or_name: str | Path) -> Profile:
 
 def parse_profile(content: dict[str, Any], origin: str) -> Profile:
     """Checks a profile that is already in memory. Raises: `BadInput` naming `origin` and the key."""
+    said = not_finite(content)
+    if said is not None:
+        raise BadInput(f"profile {origin}: {said}")
     try:
         return Profile.model_validate(content)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        key = ".".join(str(part) for part in first["loc"])
-        what = _HINTS.get(first["type"]) or first["msg"].removeprefix("Value error, ")
-        more = f" (and {error.error_count() - 1} more)" if error.error_count() > 1 else ""
-        raise BadInput(f"profile {origin}: {key + ': ' if key else ''}{what}{more}") from error
+        raise BadInput(f"profile {origin}: {sentence(error.errors(include_url=False))}") from error

@@ -61,7 +61,7 @@ def test_names_and_paths(tmp_path) -> None:
         ("signals.position.colour", "red", "signals.position.colour: unknown key"),
         ("signals.command", None, "signals.command: missing; add it"),
         ("signals.position.raw", [7, 7], "signals.position: raw \\[7.0, 7.0\\] is an impossible scale"),
-        ("devices.bench.id", 248, "devices.bench.id: Input should be less than or equal to 247"),
+        ("devices.bench.id", 248, "devices.bench.id: 248 must be at most 247"),
         ("devices.bench.identity.objects", {"vendor": "x"}, "unknown identification object 'vendor'"),
         ("devices.bench.word_order", "ACBD", "devices.bench.word_order: "),
         ("serial.parity", "X", "serial.parity: "),
@@ -73,6 +73,30 @@ def test_names_and_paths(tmp_path) -> None:
         ("calibration", None, r"signals.position is in 'V': a \[calibration\] to in is needed"),
         ("calibration.points", [[0, 0], [0, 1]], "calibration: the signal column of points must rise or fall"),
         ("signals.command.type", "u16", "cannot carry"),
+        ("limits.command_max", float("nan"), "limits.command_max: nan given, it must be finite"),
+        ("limits.slew_per_s", float("inf"), "limits.slew_per_s: inf given"),
+        ("calibration.points", [[-8.0, 0.0]], "calibration.points: 1 given, at least 2 are needed"),
+        ("calibration.points", [[-8.0, "x"], [8.0, 1.0]], "calibration.points, row 1, value 2: 'x' is not a number"),
+        ("calibration.points", [[-8.0], [8.0, 1.0]], "calibration.points, row 1, value 2: missing; add it"),
+        ("signals.position.raw", [0, 1, 2], "signals.position.raw: 3 given, at most 2 can be"),
+        ("limits.slew_per_s", -1.0, "limits.slew_per_s: -1.0 must be more than 0"),
+        ("calibration.made", "soon", "calibration.made: 'soon' is not a date like 2026-11-01"),
+        ("devices.bench.fc23", "perhaps", "devices.bench.fc23: 'perhaps' is not true or false"),
+        ("signals.sequence.address", 1.5, "signals.sequence.address: 1.5 is not a whole number"),
+        ("serial", 9600, "serial: 9600 is not a table"),
+        ("name", 7, "name: 7 is not a text in quotes"),
+        ("signals.sequence.address", 16, "signals.sequence and signals.readback share the register at address 16"),
+        (
+            "signals.sequence.address",
+            23,
+            "signals.aux.supply_psi and signals.sequence share the register at address 23",
+        ),
+        (
+            "signals.sequence.address",
+            65536,
+            "signals.sequence.address 65536 does not exist: with address_base = 0 a u16",
+        ),
+        ("signals.pressure.address", 65535, "a f32 ends at 65534 at the latest"),
     ],
 )
 def test_every_bad_profile_gets_one_sentence_with_file_and_key(path, value, sentence) -> None:
@@ -107,8 +131,12 @@ def test_addresses_counted_from_one() -> None:
         parse_profile(content, "x")
     for register in [*content["signals"]["aux"].values(), *_registers(content)]:
         register["address"] += 1
+    content["signals"]["sequence"]["address"] = 65536
+    del content["devices"]["bench"]["watchdog"]
     profile = parse_profile(content, "x")
     assert profile.wire_address(profile.signals.command) == 0
+    assert profile.signals.sequence is not None
+    assert profile.wire_address(profile.signals.sequence) == 65535
 
 
 def test_files_that_cannot_be_read(tmp_path) -> None:

@@ -131,8 +131,8 @@ def test_a_channel_that_the_valve_does_not_have_says_so(wire) -> None:  # type: 
 
 def test_a_profile_that_cannot_be_laid_out_is_named(start) -> None:  # type: ignore[no-untyped-def]
     crowded = {**TWO_MODULES, "signals": {**TWO_MODULES["signals"]}}  # type: ignore[dict-item]
-    crowded["signals"]["pressure"] = {"device": "ai", "address": 0, "type": "f32", "unit": "psi"}
-    with pytest.raises(BadInput, match=r"device 'ai' cannot be laid out: '\w+' and '\w+' share register 0"):
+    crowded["signals"]["pressure"] = {"device": "ao", "address": 211, "type": "f32", "unit": "psi"}
+    with pytest.raises(BadInput, match=r"device 'ao' cannot be laid out: 'identity.0' and '\w+' share register 210"):
         start(profile=parse_profile(crowded, "crowded.toml"))
 
 

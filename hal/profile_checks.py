@@ -1,0 +1,59 @@
+"""What the parts of a profile have to do with each other. Raises (all functions): `ValueError`, one sentence each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from hal.register import Register
+
+if TYPE_CHECKING:
+    from hal.profile import Profile
+
+_HIGHEST = 65535  # on the wire
+
+
+def check_registers(profile: Profile) -> None:
+    """Every register is on a device that there is, at an address that there is, and at no other's."""
+    taken: dict[tuple[str, str, int], str] = {}
+    for place, register in profile.every_register().items():
+        _check_register(profile, place, register)
+        for key in _keys(profile, place, register):
+            other = taken.setdefault(key, place)
+            # Many modules are read back at the register that is written.
+            if other != place and {other, place} != {"signals.command", "signals.readback"}:
+                raise ValueError(
+                    f"{place} and {other} share the register at address {register.address}; give each its own"
+                )
+
+
+def _keys(profile: Profile, place: str, register: Register) -> Iterator[tuple[str, str, int]]:
+    """Where the register is, word by word. What is written is a holding register, or a coil, whatever is read."""
+    written = place == "signals.command" or place.startswith("devices.")
+    table = (register.table or "holding") if written else profile.table_of(register)
+    for offset in range(register.words):
+        yield profile.device_name(register), table, profile.wire_address(register) + offset
+
+
+def _check_register(profile: Profile, place: str, register: Register) -> None:
+    if register.device not in profile.devices and (register.device or len(profile.devices) > 1):
+        raise ValueError(f"{place}.device '{register.device}' is not one of {', '.join(profile.devices)}")
+    base = profile.device_of(register).address_base
+    if register.address < base:
+        raise ValueError(f"{place}.address 0 does not exist on a device with address_base = 1")
+    highest = _HIGHEST + base - register.words + 1
+    if register.address > highest:
+        raise ValueError(
+            f"{place}.address {register.address} does not exist: with address_base = {base} a {register.type} ends at "
+            f"{highest} at the latest"
+        )
+
+
+def check_command(profile: Profile) -> None:
+    """The command's register carries the whole range of the limits."""
+    command, limits = profile.signals.command, profile.limits
+    for end in (limits.command_min, limits.command_max):
+        try:
+            command.to_words(end, "ABCD")
+        except ValueError as error:
+            raise ValueError(f"signals.command cannot carry the command limit {end:g}: {error}") from error
