@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -52,8 +53,23 @@ def _check_register(profile: Profile, place: str, register: Register) -> None:
 def check_command(profile: Profile) -> None:
     """The command's register carries the whole range of the limits."""
     command, limits = profile.signals.command, profile.limits
-    for end in (limits.command_min, limits.command_max):
+    for name, end in (("command_min", limits.command_min), ("command_max", limits.command_max)):
+        _check_within(profile, name, end)
         try:
             command.to_words(end, "ABCD")
         except ValueError as error:
             raise ValueError(f"signals.command cannot carry the command limit {end:g}: {error}") from error
+
+
+def _check_within(profile: Profile, name: str, limit: float) -> None:
+    """A converter's raw values end where its range ends; a float's two points only say how units are converted."""
+    command, unit = profile.signals.command, profile.command_unit
+    if command.raw is None or command.type == "f32" or math.isnan(limit):
+        return
+    low, high = sorted(command.value(raw) for raw in command.raw)
+    slack = 0.5 * command.resolution()
+    if not low - slack <= limit <= high + slack:
+        raise ValueError(
+            f"limits.{name} {limit:g} {unit} is beyond signals.command, {low:g} to {high:g} {unit}; change the limit, "
+            "or give raw and eng at the ends of the range"
+        )

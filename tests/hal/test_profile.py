@@ -72,7 +72,7 @@ def test_names_and_paths(tmp_path) -> None:
         ("signals.position.device", "other", "signals.position.device 'other' is not one of bench"),
         ("calibration", None, r"signals.position is in 'V': a \[calibration\] to in is needed"),
         ("calibration.points", [[0, 0], [0, 1]], "calibration: the signal column of points must rise or fall"),
-        ("signals.command.type", "u16", "cannot carry"),
+        ("signals.command.type", "u16", "limits.command_max 20 psi is beyond signals.command, 0 to 10 psi; change the"),
         ("limits.command_max", float("nan"), "limits.command_max: nan given, it must be finite"),
         ("limits.slew_per_s", float("inf"), "limits.slew_per_s: inf given"),
         ("calibration.points", [[-8.0, 0.0]], "calibration.points: 1 given, at least 2 are needed"),
@@ -137,6 +137,12 @@ def test_addresses_counted_from_one() -> None:
     assert profile.wire_address(profile.signals.command) == 0
     assert profile.signals.sequence is not None
     assert profile.wire_address(profile.signals.sequence) == 65535
+
+
+def test_a_float_command_may_go_beyond_the_two_points_that_convert_its_unit() -> None:
+    content = changed("signals.command.raw", [0, 100])  # a register in percent of 30 psi
+    content["signals"]["command"]["eng"] = [0.0, 15.0]
+    assert parse_profile(content, "x").signals.command.value(120) == pytest.approx(18.0)
 
 
 def test_files_that_cannot_be_read(tmp_path) -> None:
