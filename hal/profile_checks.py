@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from hal.profile import Profile
 
 _HIGHEST = 65535  # on the wire
+_COMMAND_UNITS = ("", "psi", "percent")
 
 
 def check_registers(profile: Profile) -> None:
@@ -51,8 +52,13 @@ def _check_register(profile: Profile, place: str, register: Register) -> None:
 
 
 def check_command(profile: Profile) -> None:
-    """The command's register carries the whole range of the limits."""
+    """The command comes in a unit that the program knows, and its register carries the whole range of the limits."""
     command, limits = profile.signals.command, profile.limits
+    readback = profile.signals.readback
+    if command.unit not in _COMMAND_UNITS:
+        raise ValueError(f"signals.command.unit is '{command.unit}': it must be psi or percent; let eng say those")
+    if readback is not None and readback.unit and readback.unit != profile.command_unit:
+        raise ValueError(f"signals.readback.unit is '{readback.unit}', the command is in {profile.command_unit}")
     for name, end in (("command_min", limits.command_min), ("command_max", limits.command_max)):
         _check_within(profile, name, end)
         try:

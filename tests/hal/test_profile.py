@@ -73,6 +73,8 @@ def test_names_and_paths(tmp_path) -> None:
         ("calibration", None, r"signals.position is in 'V': a \[calibration\] to in is needed"),
         ("calibration.points", [[0, 0], [0, 1]], "calibration: the signal column of points must rise or fall"),
         ("signals.command.type", "u16", "limits.command_max 20 psi is beyond signals.command, 0 to 10 psi; change the"),
+        ("signals.command.unit", "kPa", "signals.command.unit is 'kPa': it must be psi or percent"),
+        ("signals.readback.unit", "percent", "signals.readback.unit is 'percent', the command is in psi"),
         ("limits.command_max", float("nan"), "limits.command_max: nan given, it must be finite"),
         ("limits.slew_per_s", float("inf"), "limits.slew_per_s: inf given"),
         ("calibration.points", [[-8.0, 0.0]], "calibration.points: 1 given, at least 2 are needed"),
