@@ -159,7 +159,7 @@ def _served(
     profile: Profile, plant: ValvePhysics, said: dict[str, object], real_time: bool, sealed: Sealed | None = None
 ) -> Iterator[Session]:
     """Puts a plant behind Modbus frames on a pseudo-terminal and opens the bench there."""
-    from app.slow import COMPILING, say_if_slow
+    from app.slow import STARTING, say_if_slow
     from hal.clock import RealClock, SteppedClock
     from hal.modbus_bench import ModbusBench
     from hal.safety import SafeBench
@@ -167,7 +167,7 @@ def _served(
 
     clock: Clock = RealClock() if real_time else SteppedClock()
     said = {**said, "time": "real" if real_time else "stepped"}
-    with say_if_slow(COMPILING):
+    with say_if_slow(STARTING):
         served = VirtualDevice(profile, plant, clock)
     with served as device:
         # A pseudo-terminal has no bits on a wire, so there is no silence to keep between frames.

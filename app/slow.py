@@ -9,7 +9,8 @@ from functools import partial
 
 import click
 
-COMPILING = "compiling the virtual valve, once after installation; this takes up to a minute"
+# The timer does not know whether numba compiles or a busy machine only loads what was compiled before.
+STARTING = "starting the virtual valve; the first time after an installation it is compiled, which takes up to a minute"
 
 
 @contextmanager

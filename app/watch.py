@@ -58,10 +58,10 @@ def open_to_look(
 def _virtual(
     profile: Profile, physics: str | None, seed: int, options: dict[str, object], clock: Clock
 ) -> VirtualDevice:
-    from app.slow import COMPILING, say_if_slow
+    from app.slow import STARTING, say_if_slow
     from sim_device.physics.catalog import make_physics
     from sim_device.server import VirtualDevice
 
     name = physics or ("positioner" if profile.command_unit == "percent" else "thesis")
-    with say_if_slow(COMPILING):
+    with say_if_slow(STARTING):
         return VirtualDevice(profile, make_physics(name, seed, **options), clock)

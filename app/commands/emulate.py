@@ -66,7 +66,7 @@ def command(
 
     It prints the port that a master opens; the registers lie where the profile puts them (docs/register-map.md).
     """
-    from app.slow import COMPILING, say_if_slow
+    from app.slow import STARTING, say_if_slow
     from hal.profile import load_profile
     from sim_device.faults import parse_faults
     from sim_device.server import VirtualDevice
@@ -77,7 +77,7 @@ def command(
     else:
         valve, said = _open(physics or _usual(profile.command_unit), plant_options(effects, plant), seed)
     bad, options = parse_faults(faults, seed=seed, timeout_s=fault_timeout), _options(refresh, time_kind)
-    with say_if_slow(COMPILING):
+    with say_if_slow(STARTING):
         device = VirtualDevice(
             profile, valve, _clock(time_kind), link=port_link, tcp=tcp, faults=bad, pace_baud=pace, options=options
         )
