@@ -22,17 +22,18 @@ _SUPPLY_SHARE = 0.05  # of itself: more sag under load than this
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """One thing that was looked at. `numbers` are for scripts."""
+    """One thing that was looked at. `numbers` are for scripts; `remark`: nothing is broken, and yet it matters."""
 
     name: str
     ok: bool
     text: str
     numbers: Mapping[str, object] = field(default_factory=dict)
+    remark: bool = False
 
 
 def look(bench: ModbusBench, period_s: float | None) -> list[Finding]:
     """Everything that can be known without writing."""
-    return [_identity(bench), _line(bench, period_s), *_signals(bench), _calibration(bench), _safe(bench)]
+    return [_identity(bench), _line(bench, period_s), *_signals(bench), _calibration(bench), *_safe(bench)]
 
 
 def _identity(bench: ModbusBench) -> Finding:
@@ -97,13 +98,20 @@ def _calibration(bench: ModbusBench) -> Finding:
     return Finding("calibration", not expired, text, numbers)
 
 
-def _safe(bench: ModbusBench) -> Finding:
+def _safe(bench: ModbusBench) -> list[Finding]:
     profile = bench.profile
-    setup = next((d.watchdog for d in profile.devices.values() if d.watchdog is not None), None)
-    guard = "no watchdog in the device" if setup is None else f"the device's watchdog acts after {setup.timeout_s:g} s"
+    setup = profile.device_of(profile.signals.command).watchdog
+    guard = "" if setup is None else f"; the device's watchdog acts after {setup.timeout_s:g} s"
     kept = f"vents to {profile.safe_command:g} {profile.command_unit}" if profile.safe_direction == "vent" else "holds"
     numbers = {"safe_command": profile.safe_command, "safe_direction": profile.safe_direction}
-    return Finding("safe state", True, f"at the end the valve {kept}; {guard}", numbers)
+    found = [Finding("safe state", True, f"at the end the valve {kept}{guard}", numbers)]
+    if setup is None:
+        text = (
+            "none in the profile: when the cable, the power or this program fails at once (SIGKILL), nobody sends the "
+            "safe command and the valve keeps its last one; shut off the supply"
+        )
+        found.append(Finding("no watchdog", True, text, remark=True))
+    return found
 
 
 def pressurise(session: Session) -> list[Finding]:

@@ -50,7 +50,9 @@ def command(
         if not as_json:
             _print(found)
     if as_json:
-        click.echo(json.dumps({f.name: {"ok": f.ok, "text": f.text, **f.numbers} for f in findings}))
+        click.echo(
+            json.dumps({f.name: {"ok": f.ok, "remark": f.remark, "text": f.text, **f.numbers} for f in findings})
+        )
     bad = [finding.name for finding in findings if not finding.ok]
     if bad:
         raise JobFailed(f"the bench is not ready: {', '.join(bad)}")
@@ -58,4 +60,5 @@ def command(
 
 def _print(findings: Sequence[Finding]) -> None:
     for finding in findings:
-        click.echo(f"{'ok  ' if finding.ok else 'BAD '} {finding.name:<12} {finding.text}")
+        word = "BAD " if not finding.ok else "NOTE" if finding.remark else "ok  "
+        click.echo(f"{word} {finding.name:<12} {finding.text}")
