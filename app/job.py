@@ -113,8 +113,9 @@ def _warn(session: Session, sinks: Sequence[Sink]) -> None:
 
 def _say_stopped(rows: int, kind: str, folder: Path) -> None:
     from app.resume import hint
+    from hal.counted import counted
 
-    echo(f"stopped after {rows} samples; record: {folder}\ngo on with: {hint(kind, folder)}", err=True)
+    echo(f"stopped after {counted(rows, 'sample')}; record: {folder}\ngo on with: {hint(kind, folder)}", err=True)
 
 
 def _play(session: Session, loop: Loop, job: Job) -> Outcome:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import statistics
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
@@ -19,7 +20,11 @@ BAUDS = (9600, 19200, 38400, 57600, 115200)
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """A unit that answered. `turnaround_ms`: median time beyond what the bytes take on the wire; NaN if unmeasured."""
+    """A unit that answered. `turnaround_ms`: median time beyond what the bytes take on the wire.
+
+    NaN where the answers are as fast as the wire or faster: on a line without bits (pseudo-terminal, TCP), or when an
+    adapter runs at another speed.
+    """
 
     unit: int
     baud: int
@@ -84,7 +89,8 @@ def _ask(line: RtuLine, unit: int, timeout_s: float, rounds: int) -> Found | Non
         except WireFault:
             continue
         wire_s = (len(request.pdu) + len(reply.pdu) + 6) * serial.char_s
-        latencies_s.append(max(0.0, reply.latency_s - wire_s))
-    middle = statistics.median(latencies_s) if latencies_s else float("nan")
-    worst = max(latencies_s, default=float("nan"))
+        latencies_s.append(reply.latency_s - wire_s)
+    middle, worst = math.nan, math.nan
+    if latencies_s and statistics.median(latencies_s) > 0.0:
+        middle, worst = statistics.median(latencies_s), max(latencies_s)
     return Found(unit, serial.baud, serial.parity, serial.stop_bits, answer, 1e3 * middle, 1e3 * worst)

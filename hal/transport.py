@@ -135,8 +135,10 @@ class TcpTransport(FdTransport):
             link = socket.create_connection(self._address, timeout=self._connect_timeout_s)
         except OSError as error:
             reason = error.strerror or str(error)
+            number = self._address[1]  # the name may leave it out
+            tried = "" if self.name.rstrip("/").endswith(f":{number}") else f", TCP port {number} tried"
             raise PortFault(
-                f"port {self.name} cannot be reached ({reason}); is the gateway on, and the address right?"
+                f"port {self.name} cannot be reached ({reason}{tried}); is the gateway on, and the address right?"
             ) from error
         link.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
         link.setblocking(False)

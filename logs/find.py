@@ -14,7 +14,7 @@ from logs.writer import DEFAULT_ROOT
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """A run in one line, from its documents alone. `rows` is None where only the samples could tell."""
+    """A run in one line. `rows` and `seconds` are None while it runs, or where its samples cannot be read."""
 
     path: Path
     kind: str
@@ -67,7 +67,7 @@ def run_folders(root: Path) -> list[Path]:
 
 
 def summarize(folder: Path) -> Summary:
-    """Reads the two documents, not the samples, so that a table of a thousand runs is instant."""
+    """Reads the two documents, so that a table of a thousand runs is instant; the samples only after a crash."""
     from logs.run import is_being_written
 
     start, stop = _document(folder / START), _document(folder / STOP)
@@ -76,6 +76,9 @@ def summarize(folder: Path) -> Summary:
     reason = str(stop.get("reason", "still running" if running else "no stop document"))
     rows, last_s, first_s = stop.get("rows"), stop.get("last_time_s"), stop.get("first_time_s")
     known = isinstance(last_s, int | float) and isinstance(first_s, int | float)
+    seconds = float(last_s) - float(first_s) if known else None  # type: ignore[arg-type]
+    if not stop and not running:
+        rows, seconds = _left_by_a_crash(folder)
     return Summary(
         path=folder,
         kind=str(start.get("kind", "?")),
@@ -83,11 +86,22 @@ def summarize(folder: Path) -> Summary:
         status=status,
         reason=reason,
         rows=rows if isinstance(rows, int) else None,
-        seconds=float(last_s) - float(first_s) if known else None,  # type: ignore[arg-type]
+        seconds=seconds,
         controller=_name(start.get("controller")),
         note=str(start.get("note") or ""),
         size_bytes=sum(each.stat().st_size for each in folder.iterdir() if each.is_file()),
     )
+
+
+def _left_by_a_crash(folder: Path) -> tuple[int | None, float | None]:
+    """Rows and seconds of the samples that can be read."""
+    from logs.run import read_run
+
+    try:
+        run = read_run(folder)
+    except (BadInput, OSError, ValueError):
+        return None, None
+    return (run.rows, run.duration_s) if run.columns else (None, None)
 
 
 def _name(value: object) -> str:

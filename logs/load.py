@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from hal.counted import counted
 from hal.errors import BadInput
 from logs.assemble import Signals, assemble
 from logs.layout import is_run_folder
@@ -45,7 +46,8 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
     """The samples of a run. Raises: `BadInput` when a needed column is missing or no sample is usable."""
     where = str(run.path)
     if run.rows < 2:
-        raise BadInput(f"{where}: the run holds {run.rows} samples ({run.reason}); a recording needs at least 2")
+        held = counted(run.rows, "sample")
+        raise BadInput(f"{where}: the run holds {held} ({run.reason}); a recording needs at least 2")
     names = [name for name in run.columns if not name.startswith("next_")]
     columns = assign(names, _as_we_name_them(names), where)
     stated = {role: run.units.get(column.header) or column.unit for role, column in columns.items()}

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 import numpy as np
 
+from hal.counted import counted
 from hal.errors import BadInput
 from logs.layout import EVENTS, SAMPLES, START, STOP, is_run_folder
 from logs.recording import FloatArray, Recording
@@ -125,7 +126,8 @@ def read_run(path: Path) -> Run:
     running = stop is None and is_being_written(path / SAMPLES)
     rows = next(iter(columns.values())).size if columns else 0
     if stop is None and not running:
-        problems.insert(0, f"no stop document: the program was killed or the power failed; {rows} rows are readable")
+        left = f"{counted(rows, 'row')} can be read"
+        problems.insert(0, f"no stop document: the program was killed or the power failed; {left}")
     if stop is not None and rows < stop.rows:
         problems.append(f"{SAMPLES} holds {rows} of the {stop.rows} rows that were written; its tail is damaged")
     return Run(path, start, columns, units, _read_events(path, problems), stop, tuple(problems), running)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hal.counted import counted
 from hal.errors import BadInput
 from logs.recording import DataNote, FloatArray
 
@@ -60,7 +61,7 @@ def ascending(time_s: FloatArray, where: str, locate: Callable[[int], str]) -> T
         first = int(np.flatnonzero(bad)[0]) + 1
         notes.append(DataNote("rows without a usable time", "left out; the gap is marked", int(bad.sum()), first))
     if keep.size < 2:
-        raise BadInput(f"{where}: {keep.size} rows have a usable time; a recording needs at least 2")
+        raise BadInput(f"{where}: {counted(keep.size, 'row')} with a usable time; a recording needs at least 2")
     time_s = time_s[keep]
     steps = np.diff(time_s)
     if steps.size > 1 and np.all(steps <= 0) and np.any(steps < 0):

@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
+from hal.counted import counted
+
 if TYPE_CHECKING:
     from hal.dial_gauge import Fit
 
@@ -98,7 +100,8 @@ def _show(found: Fit, out: Path | None, as_json: bool) -> None:
         }
         click.echo(json.dumps(result))
         return
-    click.echo(f"calibration '{found.calibration.id}', {len(points)} points from {len(found.pairs)} readings")
+    size = f"{counted(len(points), 'point')} from {counted(len(found.pairs), 'reading')}"
+    click.echo(f"calibration '{found.calibration.id}', {size}")
     click.echo(f"{'signal':>12}  {'position in':>11}  {'residual in':>11}")
     for (signal, position), residual in zip(found.pairs, found.residuals_in, strict=True):
         click.echo(f"{signal:12.5f}  {position:11.4f}  {residual:+11.5f}")

@@ -10,6 +10,7 @@ import click
 
 from app.records import foreign_options, open_run, say_problems
 from app.targets import check_apart, check_file
+from hal.counted import counted
 
 
 @click.command()
@@ -37,14 +38,15 @@ def command(
     record = open_run(run, mapping, units, command_timing)
     _check({"--csv": None if str(csv_file) == "-" else csv_file, "--parquet": parquet_file}, record.path)
     say_problems(record)
+    size = f"{counted(record.rows, 'sample')}, {counted(len(record.columns), 'column')}"
     if csv_file is not None and str(csv_file) == "-":
         write_csv(record, sys.stdout.buffer)
     elif csv_file is not None:
         write_csv(record, csv_file)
-        click.echo(f"{csv_file}: {record.rows} samples, {len(record.columns)} columns")
+        click.echo(f"{csv_file}: {size}")
     if parquet_file is not None:
         write_parquet(record, parquet_file)
-        click.echo(f"{parquet_file}: {record.rows} samples, {len(record.columns)} columns", err=str(csv_file) == "-")
+        click.echo(f"{parquet_file}: {size}", err=str(csv_file) == "-")
 
 
 def _check(targets: Mapping[str, Path | None], record: Path) -> None:

@@ -53,8 +53,9 @@ def command(
                     yield at, 0.0
                     continue
                 absolute, amount = move
-                at = min(max(amount if absolute else at + amount, limits.command_min), limits.command_max)
-                click.echo(f"-> {at:g} {unit}")
+                wanted = amount if absolute else at + amount
+                at = min(max(wanted, limits.command_min), limits.command_max)
+                click.echo(f"-> {at:g} {unit}" + (f" (the limit; {wanted:g} {unit} is beyond)" if at != wanted else ""))
                 yield at, dwell_s
 
         hold(session, commands(), period_s, stop)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from math import isnan
 from typing import TYPE_CHECKING
 
 import click
@@ -49,13 +50,24 @@ def command(port: str, units: str, bauds: str, parities: str, timeout_s: float, 
         found.append(unit)
         if not as_json:
             click.echo(
-                f"unit {unit.unit} at {unit.baud} 8{unit.parity}{unit.stop_bits}: {unit.answer}, "
-                f"turnaround {unit.turnaround_ms:.2f} ms (worst {unit.worst_ms:.2f} ms)"
+                f"unit {unit.unit} at {unit.baud} 8{unit.parity}{unit.stop_bits}: {unit.answer}, " + _turnaround(unit)
             )
     if as_json:
-        click.echo(json.dumps([asdict(unit) for unit in found]))
+        click.echo(json.dumps([_plain(unit) for unit in found]))
     if not found:
         raise JobFailed(f"nobody answered on {port}; check power, A/B wiring, and whether the device is in Modbus mode")
+
+
+def _turnaround(unit: Found) -> str:
+    if isnan(unit.turnaround_ms):
+        why = f"it answers faster than {unit.baud} baud carries the bytes; a line without bits?"
+        return f"turnaround not measurable: {why}"
+    return f"turnaround {unit.turnaround_ms:.2f} ms (worst {unit.worst_ms:.2f} ms)"
+
+
+def _plain(unit: Found) -> dict[str, object]:
+    """JSON knows no NaN."""
+    return {key: None if isinstance(value, float) and isnan(value) else value for key, value in asdict(unit).items()}
 
 
 def _units(text: str) -> list[int]:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import click
 
+from hal.errors import BadInput
 from logs.find import Summary, run_folders, summarize
 from logs.writer import DEFAULT_ROOT
 
@@ -19,6 +20,9 @@ COLOURS = {"success": "green", "abort": "yellow", "fail": "red", "crash": "red",
 @click.option("--json", "as_json", is_flag=True, help="Print JSON for scripts.")
 def command(folder: Path, last: int | None, as_json: bool) -> None:
     """List the recorded runs under FOLDER (default: logs/runs), oldest first, with how each ended and why."""
+    if not folder.is_dir() and (folder.exists() or folder != DEFAULT_ROOT):  # the default may not be there yet
+        what = "is a file" if folder.exists() else "does not exist"
+        raise BadInput(f"{folder} {what}; name a folder with recorded runs in it (default: {DEFAULT_ROOT})")
     folders = run_folders(folder)
     runs = [summarize(each) for each in (folders[-last:] if last else folders)]
     if as_json:

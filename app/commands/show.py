@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from app.records import foreign_options, open_run
+from hal.counted import counted
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -92,7 +93,7 @@ def _print_figures(console: Console, run: Run) -> None:
         figures = ["-" if isnan(value) else f"{value:.5g}" for value in (each.low, each.mean, each.high, each.spread)]
         table.add_row(each.name, each.unit, *figures, str(each.missing or ""))
     console.print()
-    console.print(f"{run.rows} samples, {run.duration_s:.6g} s, one every {timing(run).period_s:.4g} s")
+    console.print(f"{counted(run.rows, 'sample')}, {run.duration_s:.6g} s, one every {timing(run).period_s:.4g} s")
     for name, delay in (("lateness", timing(run).lateness_s), ("latency", timing(run).latency_s)):
         if delay is not None:
             median, p99, worst = (1e3 * each for each in delay)
@@ -108,8 +109,7 @@ def _print_words(console: Console, run: Run) -> None:
     console.print("Data quality", style="bold")
     notes = _quality(run)
     for what, handled, rows, first in notes:
-        where = f" ({rows} rows, the first is row {first})" if first else f" ({rows} rows)" if rows else ""
-        console.print(Text(f"- {what}{where}: {handled}"))
+        console.print(Text(f"- {what}{_where(rows, first)}: {handled}"))
     if not notes:
         console.print("- nothing to remark")
     said = [event for event in run.events if event.kind != "state"]
@@ -119,6 +119,12 @@ def _print_words(console: Console, run: Run) -> None:
     for event in said:
         at = "after the end" if event.time_s is None else f"{event.time_s:.2f} s"
         console.print(Text(f"- {at}: {'note: ' if event.kind == 'note' else ''}{event.text}"))
+
+
+def _where(rows: int, first: int | None) -> str:
+    if first:
+        return f" (row {first})" if rows == 1 else f" ({rows} rows, the first is row {first})"
+    return f" ({counted(rows, 'row')})" if rows else ""
 
 
 def _print_sketch(console: Console, run: Run) -> None:

@@ -13,6 +13,7 @@ import click
 
 from app.records import foreign_options
 from app.targets import check_apart, check_file
+from hal.counted import counted
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
@@ -61,7 +62,7 @@ def command(
     if as_json:
         click.echo(json.dumps({"file": str(out), "model": str(plant), **figures}))
         return
-    click.echo(f"{recording.name} through {plant}: {recording.n} rows over {recording.duration_s:.6g} s")
+    click.echo(f"{recording.name} through {plant}: {counted(recording.n, 'row')} over {recording.duration_s:.6g} s")
     for note in recording.notes:
         click.echo(f"note: {note.what}: {note.handled}")
     click.echo(_sentence(recording, figures))

@@ -15,6 +15,7 @@ import click
 
 from app.options import bench_options, profile_of, record_options, sealed_option
 from app.session import open_bench
+from hal.counted import counted
 
 if TYPE_CHECKING:
     from app.job import Job
@@ -97,7 +98,8 @@ def _sweep(
         click.echo(json.dumps({"run": str(done.folder), **_plain(done.outcome)}))
         return
     click.echo(
-        f"done: {done.outcome.rows} samples, {done.outcome.missing} missing, {done.outcome.overruns} overruns, "
+        f"done: {counted(done.outcome.rows, 'sample')}, {done.outcome.missing} missing, "
+        f"{counted(done.outcome.overruns, 'overrun')}, "
         f"worst lateness {done.outcome.worst_lateness_s * 1e3:.2f} ms; the valve is at its safe command"
     )
     click.echo(f"record: {done.folder}")
@@ -191,6 +193,7 @@ def _preview(experiment: Experiment, first: int, as_json: bool) -> None:
     plan = plan_experiment(experiment, first)
     schedule = experiment.commands()
     low, high = experiment.range
+    samples = round(plan.duration_s / experiment.period_s)
     facts = {
         "kind": experiment.kind,
         "duration_s": plan.duration_s,
@@ -199,7 +202,7 @@ def _preview(experiment: Experiment, first: int, as_json: bool) -> None:
         "unit": experiment.unit,
         "steps": len(plan.steps),
         "first_step": first,
-        "samples": round(plan.duration_s / experiment.period_s),
+        "samples": samples,
         "period_s": experiment.period_s,
     }
     if as_json:
@@ -208,7 +211,8 @@ def _preview(experiment: Experiment, first: int, as_json: bool) -> None:
     longest = "at most " if experiment.until_settled else ""
     click.echo(
         f"{experiment.kind}: {longest}{duration_words(plan.duration_s)}, {low:g} to {high:g} {experiment.unit}, "
-        f"{len(plan.steps)} steps, {facts['samples']} samples, one every {experiment.period_s:g} s. Nothing was moved."
+        f"{counted(len(plan.steps), 'step')}, {counted(samples, 'sample')}, one every {experiment.period_s:g} s. "
+        "Nothing was moved."
     )
     for line in with_scale(schedule.command, experiment.unit):
         click.echo(line)

@@ -125,7 +125,7 @@ def test_jog_walks_in_steps_and_stops_at_the_limits() -> None:
     assert [line for line in output.splitlines() if line.startswith("->")] == [
         "-> 2 psi",
         "-> 19 psi",
-        "-> 20 psi",
+        "-> 20 psi (the limit; 24 psi is beyond)",
         "-> 19 psi",
     ]
 
@@ -169,6 +169,9 @@ def test_probe_finds_the_device(device, capsys) -> None:
     words = ("probe", "--port", device.port, "--bauds", "115200", "--parities", "N", "--timeout", "0.05", "--json")
     found = json.loads(lost(*words, "--units", "1-2").stdout)
     assert [(unit["unit"], unit["baud"]) for unit in found] == [(1, 115200)]
+    assert found[0]["turnaround_ms"] is None, "a pseudo-terminal has no bits"
+    slow = lost("probe", "--port", device.port, "--bauds", "300", "--parities", "N", "--units", "1").stdout
+    assert "turnaround not measurable: it answers faster than 300 baud" in slow
     assert run_roof([*words, "--units", "9"]) == 1
     assert "nobody answered" in capsys.readouterr().err
 
@@ -186,6 +189,9 @@ def test_probe_finds_the_device(device, capsys) -> None:
         (("monitor", "--port", "/dev/ttyNOPE"), 1, "there is no port"),
         (("vent", "--port", "/dev/ttyNOPE"), 1, "there is no port"),
         (("probe", "--port", "/dev/ttyNOPE"), 1, "there is no port"),
+        (("check", "--port", "tcp://127.0.0.1"), 1, "refused, TCP port 502 tried); is the gateway on"),
+        (("runs", "/nonexist"), 2, "/nonexist does not exist; name a folder with recorded runs"),
+        (("runs", "README.md"), 2, "README.md is a file; name a folder"),
         (("probe", "--port", "x", "--units", "0"), 2, "unit ids go from 1 to 247"),
         (("probe", "--port", "x", "--bauds", "fast"), 2, "--bauds fast"),
         (("probe", "--port", "tcp://h"), 2, "has no speed to look for"),

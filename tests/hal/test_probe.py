@@ -1,4 +1,8 @@
+"""A search on a real pseudo-terminal."""
+
 from __future__ import annotations
+
+import math
 
 import pytest
 
@@ -13,7 +17,9 @@ def test_units_that_answer_are_found_and_the_others_are_not(slave) -> None:
     slave.reply = lambda f: right(f) if f[0] == 2 else seal(3, b"\x83\x02") if f[0] == 3 else b""
     found = list(probe(parse_port(slave.port), settings_to_try([9600], ["N"]), range(1, 5), timeout_s=0.02, rounds=3))
     assert [(f.unit, f.baud, f.answer) for f in found] == [(2, 9600, "register 0 read"), (3, 9600, "exception 2")]
-    assert all(0.0 <= f.turnaround_ms <= f.worst_ms for f in found)
+    assert all(math.isnan(f.turnaround_ms) and math.isnan(f.worst_ms) for f in found), "a pseudo-terminal has no bits"
+    fast = list(probe(parse_port(slave.port), settings_to_try([4_000_000], ["N"]), [2], timeout_s=0.02, rounds=5))
+    assert [0.0 < f.turnaround_ms <= f.worst_ms for f in fast] == [True]
     assert all(f[1] == 3 for f in slave.requests), "a search must not write"
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from hal.errors import BadInput
 from logs.find import find_record, run_folders, summarize
-from logs.layout import EVENTS, STOP
+from logs.layout import EVENTS, SAMPLES, STOP
 from logs.notes import add_note
 from logs.run import read_run
 from logs.writer import RunWriter
@@ -48,7 +48,10 @@ def test_a_summary_needs_no_samples_and_tells_a_crash(root: Path) -> None:
     assert (summary.kind, summary.status, summary.rows) == ("staircase", "success", 30)
     assert summary.seconds == pytest.approx(2.9)
     (folder / STOP).unlink()
-    assert summarize(folder).status == "crash" and summarize(folder).rows is None
+    crashed = summarize(folder)
+    assert (crashed.status, crashed.rows) == ("crash", 30) and crashed.seconds == pytest.approx(2.9)
+    (folder / SAMPLES).write_bytes(b"torn")
+    assert summarize(folder).rows == 0
 
 
 def test_a_note_after_the_end_has_no_bench_time(root: Path) -> None:

@@ -85,7 +85,7 @@ def test_a_signal_with_a_range_becomes_a_pressure(tmp_path: Path) -> None:
         ("", {}, ["empty"]),
         ("nothing\n", {}, ["only one column"]),
         (HEAD, {}, ["no row under the header"]),
-        (HEAD + "0,3,3,0\n", {}, ["1 rows have a usable time"]),
+        (HEAD + "0,3,3,0\n", {}, ["1 row with a usable time"]),
         (HEAD + "0,3,3,0\n1,4x,3,0\n", {}, ["row 2 (line 3)", "'4x'", "command_psi"]),
         (HEAD + "0,3,3,0\n1,4,3\n2,4,3,0\n", {}, ["line 3", "3 cells", "header has 4"]),
         (HEAD + "0,,3,0\n1,,3,0\n", {}, ["command_psi", "holds no number"]),
