@@ -86,9 +86,11 @@ def _settled(result: StageResult, judgement: Judgement) -> Proposal:
     """After causes without a rival: who is not beyond doubt, and what they leave, of the signal in which it is."""
     sure = min(c.probability for c in judgement.causes)
     worst = max(result.decisions, key=lambda d: d.accepted.mse)
-    left = worst.accepted.mse**0.5
+    channel = worst.findings.channel
+    # beyond the edges of coarse steps there is next to no noise: what is left is held against that of the reading
+    left = worst.accepted.mse**0.5 * (channel.sigma / result.case.sigma_y if channel.half > 0.0 else 1.0)
     much = (
-        f"in the {'pressure' if worst.findings.channel.name == 'pressure' else 'position'}, on the rows that they were "
+        f"in the {'pressure' if channel.name == 'pressure' else 'position'}, on the rows that they were "
         f"fitted to, they leave {left:.2g} times its noise, which no candidate explains: repeat the record to see "
         "whether that repeats."
     )

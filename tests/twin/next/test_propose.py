@@ -148,12 +148,22 @@ def test_the_rest_is_said_of_the_signal_in_which_it_is() -> None:
     found = result(*PAIR)
     [decision] = found.decisions
     pressure = SimpleNamespace(
-        accepted=SimpleNamespace(mse=64.0), findings=SimpleNamespace(channel=SimpleNamespace(name="pressure"))
+        accepted=SimpleNamespace(mse=64.0), findings=SimpleNamespace(channel=SimpleNamespace(name="pressure", half=0.0))
     )
     both = SimpleNamespace(case=found.case, decisions=(decision, pressure))
     why = _settled(both, judged("dead_time", probability=0.97)).next.why  # type: ignore[arg-type]
     assert "in the pressure" in why
     assert "8 times its noise" in why
+
+
+def test_the_rest_of_a_coarse_reading_is_held_against_its_noise() -> None:
+    """Beyond the edges of its steps there is next to none, so that a little is hundreds of times as much."""
+    found = result(*PAIR)
+    channel = SimpleNamespace(name="position", half=0.002, sigma=0.01 * found.case.sigma_y)
+    coarse = SimpleNamespace(accepted=SimpleNamespace(mse=300.0**2), findings=SimpleNamespace(channel=channel))
+    one = SimpleNamespace(case=found.case, decisions=(coarse,))
+    why = _settled(one, judged("dead_time", probability=0.97)).next.why  # type: ignore[arg-type]
+    assert "3 times its noise" in why
 
 
 def test_every_rival_is_named_with_the_signal_that_would_tell() -> None:
