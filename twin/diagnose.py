@@ -28,6 +28,7 @@ from twin.gap import GapParts, retuning_pays
 from twin.hearing import Hearing
 from twin.heldout import tied_note
 from twin.lateness import late_commands
+from twin.moved import moved_numbers
 from twin.next.propose import propose
 from twin.noise.blurred import on_their_steps
 from twin.noise.copies import used_once
@@ -130,6 +131,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
+    known.notes += moved_numbers(case.base.design, final.design, [c.name for c in judgement.causes])
     diagnosis = assembled(
         case, result, judgement, final, where, parts, itself.loud, settings.rules, settings.seed, known.notes
     )

@@ -1,0 +1,28 @@
+"""What the updated model has elsewhere than the design, though it was not accused, is said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from control.design import DesignModel
+from twin.fit.numbers import retuned
+from twin.moved import moved_numbers
+
+DESIGN = DesignModel()
+
+
+def test_numbers_that_moved_far_are_said_unless_accused() -> None:
+    updated = retuned(DESIGN, {"deadband": 2.6, "tau": 2.75, "ep_tau": 0.45})
+    (note,) = moved_numbers(DESIGN, updated, ("creep",))
+    assert "deadband 2.6 instead of 2.96 psi" in note.what
+    assert "ep_tau 0.45 instead of 0.3 s" in note.what
+    assert " tau " not in note.what  # 2 % are no news
+    (rest,) = moved_numbers(DESIGN, updated, ("parameter:deadband",))
+    assert "deadband" not in rest.what
+    assert moved_numbers(DESIGN, updated, ("parameter:deadband", "parameter:ep_tau")) == []
+
+
+def test_a_deadband_where_the_design_has_none() -> None:
+    without = replace(DESIGN, a1=7.3, a2=7.3)
+    (note,) = moved_numbers(without, retuned(without, {"deadband": 0.3}), ())
+    assert "deadband 0.3 instead of 0 psi" in note.what
