@@ -73,6 +73,7 @@ def command(
     (without --port: on the virtual valve) and diagnosed together with RUNS, which may then be left out.
     """
     from app.recordings import load_all
+    from app.stoppable import stoppable
     from app.targets import check_folder
     from control.design import load_design
     from hal.errors import BadInput
@@ -85,11 +86,12 @@ def command(
     check_folder("--out", out, (*runs, *healthy, design), writes=FILES)
     if design is not None:
         load_design(design)  # a file that is no design is told at once, and leaves nothing
-    recordings, golden = (load_all(paths, mapping, units, command_timing) for paths in (runs, healthy))
-    if active:
-        outcome = _pursued(recordings, golden, design, out, budget_minutes, bench)
-    else:
-        outcome = _diagnosed(recordings, golden, design, out, bench["seed"])
+    with stoppable(out):
+        recordings, golden = (load_all(paths, mapping, units, command_timing) for paths in (runs, healthy))
+        if active:
+            outcome = _pursued(recordings, golden, design, out, budget_minutes, bench)
+        else:
+            outcome = _diagnosed(recordings, golden, design, out, bench["seed"])
     _print(outcome, out, as_json)
 
 
