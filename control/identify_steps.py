@@ -58,9 +58,11 @@ def _times(recording: Recording, dwells: Dwells, settling: Settling, travel: flo
     tau_s, ep_tau_s = settling.tau_s, settling.delay_s
     least = max(NOISES * fast_noise(recording.position), 0.01 * travel)
     largest = min(0.6 * settling.rate_limit * tau_s, 0.5 * travel)
-    ends = at_rest(find_dwells(recording, settling.delay_s + LATEST_TAUS * tau_s), settling)
+    ends = _ends(recording, dwells, settling)
     times = []
     for i in range(2, dwells.command.size):
+        if not np.isfinite(ends[i - 1 : i + 1]).all():
+            continue
         start_s = dwells.start_s[i]
         before = (recording.time_s > start_s - BEFORE_TAUS * tau_s) & (recording.time_s <= start_s)
         if not np.isfinite(recording.position[before]).any():
@@ -81,6 +83,16 @@ def _times(recording: Recording, dwells: Dwells, settling: Settling, travel: flo
         if crossed is not None:
             times.append(crossed)
     return times
+
+
+def _ends(recording: Recording, dwells: Dwells, settling: Settling) -> FloatArray:
+    """Where the stem of each dwell comes to rest, shape (m,); NaN where too few rows tell it within `LATEST_TAUS`.
+
+    Rows that lie far apart leave dwells without an end, so the two are paired by when they begin.
+    """
+    begun = find_dwells(recording, settling.delay_s + LATEST_TAUS * settling.tau_s)
+    known = dict(zip(begun.start_s.tolist(), at_rest(begun, settling).tolist(), strict=True))
+    return np.array([known.get(start_s, np.nan) for start_s in dwells.start_s.tolist()])
 
 
 def crossing_s(elapsed_s: FloatArray, left: FloatArray) -> float | None:

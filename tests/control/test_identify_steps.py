@@ -31,6 +31,26 @@ def test_too_few_steps_give_none() -> None:
     assert found.tau_s is None
 
 
+def test_rows_so_far_apart_that_no_step_shows_its_end_give_none() -> None:
+    command = np.repeat([4.0, *np.arange(8.7, 11.5, 0.25)], 45)
+    coarse = record(Toy(), np.arange(command.size) * 100.0, command)
+    assert time_constant_63([coarse], Settling(2.7, 0.3, 0.12), 0.5625).raw_s.size == 0
+
+
+def test_steps_keep_their_own_ends_where_rows_beside_them_are_missing() -> None:
+    """The dwell in the middle lost the rows by which its end is read; the others still are what they were."""
+    levels = [4.0, *np.arange(8.7, 11.5, 0.25), 11.5]
+    command = np.repeat(levels, 250)
+    whole = record(Toy(), np.arange(command.size) * 0.1, command)
+    kept = np.ones(command.size, dtype=bool)
+    kept[5 * 250 + 1 : 5 * 250 + 130] = False
+    holed = Recording("x", whole.time_s[kept], whole.command[kept], whole.position[kept])
+    found = time_constant_63([holed], Settling(2.7, 0.3, 0.12), 0.5625)
+    assert found.tau_s is not None
+    assert found.raw_s.size >= 8
+    assert found.tau_s.value == pytest.approx(2.7, rel=0.03)
+
+
 @pytest.mark.parametrize(("tau_s", "ep_tau_s"), [(2.7, 0.3), (5.0, 0.0), (1.0, 0.2)])
 def test_the_converters_share_is_taken_out(tau_s: float, ep_tau_s: float) -> None:
     time_s = np.arange(0.0, 30.0, 1e-3)
