@@ -20,6 +20,9 @@ from twin.simulate import simulate_recording
 LEAST_ROWS = 50
 LEAST_LAGS = 4.0
 SHORT_S = 60.0
+#: Rows further apart than so many times what the valve takes for anything show it at rest only; a slow log is forgiven.
+_MOST_STROKES = 10.0
+_FORGIVEN_S = 30.0
 #: A stem that stays within so many sigmas of its noise has not moved; one predicted to do so by this share has.
 STILL_SIGMAS = 8.0
 PREDICTED = 0.1
@@ -46,6 +49,7 @@ def admit(recordings: Sequence[Recording], plant: Plant, noise: NoiseModel) -> l
     """
     names = ", ".join(r.name for r in recordings[:3]) + (", ..." if len(recordings) > 3 else "")
     notes = _long_enough(recordings, plant, names)
+    _refuse_sparse(recordings, plant)
     _refuse_undriven(recordings, plant)
     motions = [_motion(r, plant) for r in recordings]
     still = max(m.reading for m in motions) <= STILL_SIGMAS * noise.position.sigma
@@ -80,6 +84,20 @@ def _long_enough(recordings: Sequence[Recording], plant: Plant, names: str) -> l
         return []
     what = f"the record is short: {duration_s:.3g} s"
     return [DataNote(what, "only large effects can show: see what was testable, with its detection limits", rows)]
+
+
+def _refuse_sparse(recordings: Sequence[Recording], plant: Plant) -> None:
+    """Rows so far apart that no motion lies between two of them: nothing could be told, and simulating takes ages."""
+    d = plant.design
+    stroke_s = d.ep_tau_s + d.tau_s + d.travel / d.rate_limit
+    most_s = max(_MOST_STROKES * stroke_s, _FORGIVEN_S)
+    for one in recordings:
+        if one.period_s > most_s:
+            raise BadInput(
+                f"{one.name}: a row every {one.period_s:.4g} s shows nothing of a valve that is through with a stroke "
+                f"within {stroke_s:.3g} s; at most {most_s:.3g} s: check the unit of the time (--units time=ms), or "
+                "record more often"
+            )
 
 
 def _motion(recording: Recording, plant: Plant) -> _Motion:

@@ -22,6 +22,32 @@ def admitted(position: FloatArray, command: FloatArray = LEVEL) -> None:
     admit(records, Plant(DesignModel()), estimate_noise(records))
 
 
+@pytest.mark.parametrize(
+    ("period_s", "design"),
+    [(100.0, DesignModel()), (31.0, DesignModel(ep_tau_s=0.0, tau_s=0.02, rate_limit=100.0))],
+)
+def test_rows_further_apart_than_anything_the_valve_does_are_refused(period_s: float, design: DesignModel) -> None:
+    command = np.where(np.arange(TIME_S.size) // 50 % 2, 12.0, 4.0)
+    records = [Recording("r", 10.0 * period_s * TIME_S, command, 0.05 * (command - 4.0) + NOISE)]
+    said = rf"^r: a row every {period_s:g} s shows nothing .*at most [\d.]+ s: check the unit .*--units time=ms"
+    with pytest.raises(BadInput, match=said):
+        admit(records, Plant(design), estimate_noise(records))
+
+
+@pytest.mark.parametrize(
+    ("period_s", "design"),
+    [
+        (10.0, DesignModel(ep_tau_s=1.0, tau_s=5.0, rate_limit=100.0)),  # a plant's log
+        (30.0, DesignModel(ep_tau_s=0.0, tau_s=0.0, rate_limit=100.0)),
+        (60.0, DesignModel()),
+    ],
+)
+def test_a_slow_log_of_a_valve_is_not_refused(period_s: float, design: DesignModel) -> None:
+    time_s, command = period_s * np.arange(600.0), np.where(np.arange(600) // 50 % 2, 12.0, 4.0)
+    records = [Recording("r", time_s, command, 0.05 * (command - 4.0) + NOISE[:600])]
+    admit(records, Plant(design), estimate_noise(records))
+
+
 @pytest.mark.parametrize("period_s", [30.0, 250.0])
 def test_a_stem_that_comes_and_goes_without_a_command_is_refused(period_s: float) -> None:
     swung = 0.28 + 0.2 * np.sin(2.0 * np.pi * TIME_S / period_s)
