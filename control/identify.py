@@ -16,7 +16,7 @@ from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
 from control.identify_pressure import PressureStage
 from control.identify_readings import fast_noise
-from control.identify_result import Estimate, Identified, quality_of
+from control.identify_result import Estimate, Identified, misfit, quality_of
 from control.identify_slopes import slopes
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
@@ -37,8 +37,7 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     base = defaults or default_design(unit_p, unit_x)
     notes: list[str] = []
     recordings = [cleaned(each, notes) for each in recordings]
-    tracks: list[Track] = []
-    stages: list[PressureStage] = []
+    tracks, stages = list[Track](), list[PressureStage]()
     for recording in recordings:
         stage, fine_s, fine = drive_of(recording, base.ep_tau_s, notes)
         if stage is not None:
@@ -56,11 +55,12 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     estimates += slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design, notes)
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
-    position = np.concatenate([t.position[t.good] for t in tracks])
+    quality = quality_of(residual, np.concatenate([t.position[t.good] for t in tracks]), design.travel)
+    notes += misfit(quality, [recording.position for recording in recordings])
     return Identified(
         design,
         tuple(estimates),
-        quality_of(residual, position, design.travel),
+        quality,
         tuple(recording.name for recording in recordings),
         int(residual.size),
         tuple(dict.fromkeys(notes)),

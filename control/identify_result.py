@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from typing import Literal
 
@@ -10,8 +10,12 @@ import numpy as np
 
 from control.design import DesignModel
 from control.identify_interval import Interval
+from control.identify_readings import fast_noise
 from logs.recording import FloatArray
 
+# A residual so many times the noise, and of so much of travel, is no noise; a healthy valve's stays within twice of it.
+MISFIT_NOISES = 5.0
+MISFIT_PERCENT = 0.5
 Source = Literal["fit", "curves", "63 % rule", "kept"]
 
 
@@ -82,3 +86,30 @@ def quality_of(residual: FloatArray, position: FloatArray, travel: float) -> Qua
     spread = float(np.linalg.norm(position - position.mean()))
     explained = 100.0 * (1.0 - float(np.linalg.norm(residual)) / spread) if spread > 0.0 else float("nan")
     return Quality(rms, 100.0 * rms / travel, explained)
+
+
+def misfit(quality: Quality, positions: Sequence[FloatArray]) -> tuple[str, ...]:
+    """A warning where the model clearly does not fit its own record: the intervals hold for a model that is right.
+
+    The steps of a coarse reading count as its noise, and values that are shown again and again as one.
+    """
+    noise = max(max(fast_noise(each), fast_noise(_new(each)), _step(each) / 12.0**0.5) for each in positions)
+    if quality.rms_percent_of_travel < MISFIT_PERCENT or quality.rms < MISFIT_NOISES * noise:
+        return ()
+    times = f"by {quality.rms / noise:.2g} times its noise" if noise > 0.0 else "although it is free of noise"
+    return (
+        f"the model misses this record {times} (RMS {quality.rms_percent_of_travel:.2g} % of travel); "
+        "the intervals do not cover that: something is at work that the model does not know; run lostmotion diagnose",
+    )
+
+
+def _new(values: FloatArray) -> FloatArray:
+    """The readings that are not the ones before."""
+    known = values[np.isfinite(values)]
+    return known[np.flatnonzero(np.diff(known)) + 1]
+
+
+def _step(values: FloatArray) -> float:
+    """The smallest distance between two different readings."""
+    distances = np.diff(np.unique(values[np.isfinite(values)]))
+    return float(distances.min()) if distances.size else 0.0

@@ -179,3 +179,28 @@ def test_the_result_goes_into_json_and_names_what_is_missing() -> None:
     assert found.quality.fit_percent > 99.0
     with pytest.raises(KeyError):
         found["colour"]
+
+
+def test_a_model_that_clearly_does_not_fit_says_that_the_intervals_do_not_cover_that() -> None:
+    healthy = sweep()
+    swung = replace(healthy, position=healthy.position + 0.02 * np.sin(healthy.time_s / 7.0))
+    said = [note for note in identify([swung]).notes if "the model misses this record" in note]
+    assert len(said) == 1
+    assert "by 22 times its noise" in said[0]
+    assert "run lostmotion diagnose" in said[0]
+
+
+@pytest.mark.parametrize("kind", ["plain", "quiet", "loud", "coarse", "slow", "loud pressure", "no pressure"])
+def test_a_healthy_record_gets_no_such_warning(kind: str) -> None:
+    run = sweep(1.0 if kind == "slow" else 0.1)
+    assert run.pressure is not None
+    chance = np.random.default_rng(1).standard_normal(run.n)
+    quiet = record(Toy(), run.time_s, run.command, noise_x=0.0)
+    changed = {
+        "quiet": quiet,
+        "loud": replace(run, position=run.position + 0.005 * chance),
+        "coarse": replace(run, position=np.round(run.position / 0.01) * 0.01),
+        "loud pressure": replace(run, pressure=run.pressure + 0.1 * chance),
+        "no pressure": without_pressure(run),
+    }.get(kind, run)
+    assert not any("misses this record" in note for note in identify([changed]).notes)
