@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import permutations
 
 import numpy as np
 
@@ -14,6 +15,8 @@ from control.identify_valve import Track, first_position
 from logs.recording import FloatArray, Recording
 
 FEWEST_ROWS = 30
+_UNIT_TOLERANCE = 0.01
+_UNITS_KPA = {"psi": 6.894757, "kPa": 1.0, "bar": 100.0}  # those that a pneumatic signal is given in
 
 
 def cleaned(recording: Recording, notes: list[str]) -> Recording:
@@ -52,9 +55,20 @@ def drive_of(
     if not stage.is_calibrated:
         notes.append(
             f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}: "
-            "the E/P transducer and its transmitter disagree; the design model has no place for that"
+            f"{unit_doubt(stage.gain)}the design model has no place for that"
         )
     return stage, grid.fine_time_s, stage.fine
+
+
+def unit_doubt(gain: float) -> str:
+    """What is to be said of a `gain` from command to pressure that should be 1: whether two units would make it."""
+    for of, per in permutations(_UNITS_KPA, 2):
+        if abs(gain * _UNITS_KPA[of] / _UNITS_KPA[per] - 1.0) < _UNIT_TOLERANCE:
+            return (
+                f"that is {of} per {per}, so one of the two is in another unit than it is read in; "
+                "give both (--units command=UNIT,pressure=UNIT): "
+            )
+    return "the E/P transducer and its transmitter disagree; "
 
 
 def tracks_of(

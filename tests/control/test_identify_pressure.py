@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from control.identify_model import lagged, make_grid
 from control.identify_pressure import fit_pressure, moving_average
-from tests.control.toy_valve import random_steps
+from control.identify_tracks import drive_of, unit_doubt
+from tests.control.toy_valve import Toy, random_steps, record
 
 TIME_S = np.arange(0.0, 200.0, 0.1)
 COMMAND = random_steps(200.0, 0.1)
@@ -70,3 +73,32 @@ def test_the_moving_average_has_no_phase_and_steps_over_holes() -> None:
     good[500:505] = False
     smooth = moving_average(TIME_S, np.where(good, values, 99.0), good, 1.0)
     assert np.abs(smooth - values)[20:-20].max() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("gain", "said"),
+    [
+        (0.1450, "psi per kPa"),
+        (6.895, "kPa per psi"),
+        (14.5, "psi per bar"),
+        (0.0690, "bar per psi"),
+        (100.5, "kPa per bar"),
+    ],
+)
+def test_a_gain_that_two_units_would_make_is_said_to_be_that(gain: float, said: str) -> None:
+    assert f"that is {said}, so one of the two is in another unit" in unit_doubt(gain)
+    assert "--units command=UNIT,pressure=UNIT" in unit_doubt(gain)
+
+
+def test_the_note_of_a_record_says_it() -> None:
+    run = record(Toy(), TIME_S, COMMAND)
+    assert run.pressure is not None
+    notes: list[str] = []
+    drive_of(replace(run, pressure=run.pressure / 6.894757), 0.3, notes)
+    assert "pressure = 0.1450 x command" in notes[0]
+    assert "psi per kPa" in notes[0]
+
+
+@pytest.mark.parametrize("gain", [0.95, 1.05, 0.1433, 7.0, -6.895, 0.0])
+def test_any_other_gain_is_the_transducers(gain: float) -> None:
+    assert "disagree" in unit_doubt(gain)
