@@ -104,7 +104,7 @@ def load_design(path: Path) -> DesignModel:
     except OSError as error:
         raise BadInput(f"{path}: the design model cannot be read ({error.strerror}); check the path") from error
     except tomllib.TOMLDecodeError as error:
-        raise BadInput(f"{path}: not a TOML file ({error}); see the design model format in docs") from error
+        raise BadInput(f"{path}: not a TOML file ({error}); docs/model-format.md shows one") from error
     except ValidationError as error:
         raise BadInput(f"{path}: {_wrong(error.errors()[0])}") from error
     if data.units.time not in ("s", "ms", "min"):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -33,3 +34,14 @@ def test_what_is_wrong_is_one_short_sentence(file: Path, old: str, new: str, sen
     assert str(told.value).startswith(f"{file}: ")
     assert sentence in str(told.value)
     assert "{" not in str(told.value)
+
+
+def test_a_file_that_is_no_toml_is_led_to_a_page_that_shows_one(file: Path) -> None:
+    file.write_text("[valve\n")
+    with pytest.raises(BadInput, match=r"not a TOML file .*; docs/model-format.md shows one$"):
+        load_design(file)
+    page = (Path(__file__).parents[2] / "docs" / "model-format.md").read_text(encoding="utf-8")
+    file.write_text(page.split("```toml\n")[1].partition("```")[0])
+    found = load_design(file)
+    assert replace(found, effects={}) == DesignModel()
+    assert found.effects == {"stiction": {"form": "one_jump", "breakaway": 0.35}}
