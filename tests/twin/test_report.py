@@ -100,7 +100,15 @@ def test_the_stretch_with_the_worst_pressure(shown: Series) -> None:
 def test_same_input_same_bytes(shown: Series, page: str, tmp_path: Path) -> None:
     path = tmp_path / "report.html"
     write_report(diagnosis(shown), shown, path)
-    assert path.read_text(encoding="utf-8") == page
+    there = page.replace("lostmotion sweep next.toml", f"lostmotion sweep {tmp_path / 'next.toml'}")
+    assert there != page  # what it says to run can be run from anywhere
+    assert path.read_text(encoding="utf-8") == there
+
+
+def test_limits_are_right_for_effects_that_are_worse_when_smaller_and_the_records_are_not_claimed(page: str) -> None:
+    assert "the mildest case that would have been found here" in page
+    assert "smallest size" not in page
+    assert "every number of this page" not in page
 
 
 def test_a_page_of_an_unfinished_diagnosis_is_not_headed_by_a_verdict(shown: Series) -> None:

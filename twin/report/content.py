@@ -162,7 +162,7 @@ def confusion_lines(diagnosis: Diagnosis) -> list[tuple[str, str]]:
 
 
 def tested_rows(diagnosis: Diagnosis) -> list[dict[str, object]]:
-    """Per effect: testable or not, and the least size that this record could have shown."""
+    """Per effect: testable or not, and the mildest case that this record could have shown."""
     return [
         {
             "name": name(test.name),

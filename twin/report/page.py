@@ -22,16 +22,19 @@ from twin.report.series import Series
 from twin.report.words import heading, interval, name, number, percent
 
 _TEMPLATE = Path(__file__).parent / "template.html.j2"
+_HERE = Path()
 
 
 def write_report(diagnosis: Diagnosis, series: Series, path: Path) -> None:
     """Writes the page; nothing in it refers to anything outside it. Takes a second or two, whatever the rows."""
-    path.write_text(render(diagnosis, series), encoding="utf-8")
+    path.write_text(render(diagnosis, series, path.parent), encoding="utf-8")
 
 
-def render(diagnosis: Diagnosis, series: Series) -> str:
-    """The page as text; the same input gives the same text."""
+def render(diagnosis: Diagnosis, series: Series, folder: Path = _HERE) -> str:
+    """The page as text; the same input gives the same text. `folder` is where it and the next experiment lie."""
     import jinja2
+
+    proposed = diagnosis.next_experiment
 
     environment = jinja2.Environment(
         autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined
@@ -39,6 +42,7 @@ def render(diagnosis: Diagnosis, series: Series) -> str:
     template = environment.from_string(_TEMPLATE.read_text(encoding="utf-8"))
     return template.render(
         d=diagnosis,
+        next_file=folder / proposed.file if proposed is not None and proposed.file else "",
         verdict=heading(diagnosis),
         figures=_figures(diagnosis, series),
         records=_records(series),
