@@ -29,8 +29,8 @@ from logs.recording import FloatArray, Recording
 def identify(recordings: Sequence[Recording], defaults: DesignModel | None = None) -> Identified:
     """The design model of the valve that made these recordings; `defaults` are kept where they do not tell.
 
-    Raises: `BadInput` when they are in different units, too short, or the valve does not move; `JobFailed` when the
-    position falls with rising pressure, or follows the pressure in no way that the model knows.
+    Raises: `BadInput` when they are in different units, too short, the valve does not move, or the position falls with
+    rising pressure; `JobFailed` when it follows the pressure in no way that the model knows.
     """
     _check(recordings)
     unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
@@ -130,7 +130,7 @@ def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequen
     names = ", ".join(recording.name for recording in recordings)
     cause = "command" if all(recording.pressure is None for recording in recordings) else "pressure"
     if float(np.corrcoef(pressure, position)[0, 1]) < -0.3:
-        raise JobFailed(
+        raise BadInput(
             f"{names}: the position falls as the {cause} rises; 0 must be the open end, so turn the position round"
         )
     raise JobFailed(

@@ -144,9 +144,9 @@ def test_separate_slopes() -> None:
 
 def test_what_cannot_be_identified_is_refused_in_words() -> None:
     plain = sweep(0.5)
-    with pytest.raises(JobFailed, match="position falls as the pressure rises"):
+    with pytest.raises(BadInput, match="position falls as the pressure rises"):
         identify([replace(plain, position=0.5625 - plain.position)])
-    with pytest.raises(JobFailed, match="position falls as the command rises"):
+    with pytest.raises(BadInput, match="position falls as the command rises"):
         identify([replace(plain, pressure=None, position=0.5625 - plain.position)])
     with pytest.raises(BadInput, match="command never changes"):
         identify([replace(plain, command=np.full(plain.n, 9.0))])
