@@ -119,7 +119,9 @@ def _experiment(
     from control.experiment_file import from_plain, load_experiment, to_plain
     from hal.errors import BadInput
 
-    if (what is None) == (resume is None):
+    if what is not None and resume is not None:
+        raise BadInput(f"{what} and --resume exclude each other: a run goes on with its own experiment; name one")
+    if what is None and resume is None:
         raise BadInput("name an experiment kind or file, or a run to go on with: sweep KIND|FILE.toml, or --resume RUN")
     given = parse_settings(settings)
     if resume is not None:

@@ -127,6 +127,7 @@ def test_the_positioner_is_swept_in_percent(tmp_path: Path) -> None:
         (["hold", "--port", "/dev/null", "--physics", "thesis"], "leave them out with --port"),
         (["absent.toml"], "absent.toml: the experiment cannot be read"),
         (["--resume", "absent"], "'absent' is neither a file nor a run"),
+        (["staircase", "--resume", "absent"], "staircase and --resume exclude each other"),
     ],
 )
 def test_bad_input_is_one_sentence_and_exit_2(
