@@ -23,7 +23,7 @@ from twin.fit.fitting import fit
 from twin.fit.space import make_space
 from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
 from twin.stages import StageResult, driven_about
-from twin.wander import wander
+from twin.wander import comes_and_goes, wander
 
 
 def wandering(size_psi: float) -> Recording:
@@ -40,6 +40,32 @@ def wandering(size_psi: float) -> Recording:
     position = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)
     read = pressure[grid.offsets] + dice.normal(0.0, 5e-3, r.n)
     return replace(r, pressure=read, position=position + dice.normal(0.0, 6e-4, r.n))
+
+
+def hung(size_psi: float) -> Recording:
+    """A healthy valve whose converter stays back by `size_psi` for 3 s now and then, and the stem with it."""
+    command = staircase()
+    trial, _ = trial_of(Plant(DESIGN), command)
+    r, grid, dice = trial.recording, trial.grid, np.random.default_rng(8)
+    c = Plant(DESIGN).coefficients(float(r.time_s[-1]))
+    fine_s = np.interp(np.linspace(0.0, r.n - 1.0, grid.n_fine), np.arange(r.n), r.time_s)
+    settled = pressure_response(c, grid, command, float(command[0]))
+    pressure = settled - size_psi * (np.mod(fine_s, 70.0) < 3.0)
+    position = reading_response(c, grid, stem_response(c, grid, pressure, 0.0, 0.0), pressure)
+    read = pressure[grid.offsets] + dice.normal(0.0, 5e-3, r.n)
+    return replace(r, pressure=read, position=position + dice.normal(0.0, 6e-4, r.n))
+
+
+@pytest.mark.parametrize(("one", "events"), [(wandering(0.008), False), (hung(0.04), True), (wandering(0.0), False)])
+def test_what_comes_and_goes_is_told_from_what_wanders(one: Recording, events: bool) -> None:
+    channel = pressure_channel(make_case([one], DESIGN).trials, 5e-3)
+    assert comes_and_goes(channel.residuals(Plant(DESIGN)), channel.trials) is events
+
+
+@pytest.mark.thorough
+def test_what_comes_and_goes_is_no_noise() -> None:
+    """As large over all as what wanders and counts as noise, but an event, which nobody would call the usual."""
+    assert diagnose([hung(0.04)], DESIGN, (), UP_TO_TWO).diagnosis.verdict == "unexplained"
 
 
 @pytest.mark.thorough
