@@ -22,7 +22,7 @@ from hal.reopen import Reopening
 from hal.reply import Bus, Reply
 from hal.sample import Quality, Sample
 from hal.second_master import SecondMaster
-from hal.tick import min_period_s, plan_tick
+from hal.tick import looking_period_s, min_period_s, plan_tick
 from hal.watchdog import WatchdogControl, check_status
 
 _BUSY = (5, 6)  # exceptions that ask for patience; the next tick asks again
@@ -68,7 +68,7 @@ class ModbusBench:
         self._lock = threading.RLock()  # the dead man's thread may send the valve to safety in the middle of a tick
         self._identity: dict[str, str] = {}
         self._readback = ReadbackCheck(profile, self._plan, port)
-        self._others = SecondMaster(self._plan, self._watchdog, self._readback)
+        self._others = SecondMaster(self._plan, looking_period_s(self._plan, profile), self._watchdog, self._readback)
         self._reopening = reopening or Reopening()
         self._open = False
         self._armed = False

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from math import inf
 
 from hal.assemble import NO_VALUE
 from hal.errors import DeviceRefused, SafetyTrip, WireFault
@@ -27,11 +28,14 @@ _NOTICE_S = 1.5  # from the first of them on: meanwhile another program of ours 
 class SecondMaster:
     """Compares what the device holds with what it was sent last. Without a read-back in the profile nothing is read.
 
-    `readback` says how far the two may differ, and names the device in the sentence.
+    `readback` says how far the two may differ, and names the device in the sentence. Ticks less than `room_s`
+    apart have no time for a look; a command that is late each second would be worse.
     """
 
-    def __init__(self, plan: TickPlan, watchdog: WatchdogControl, readback: ReadbackCheck) -> None:
+    def __init__(self, plan: TickPlan, room_s: float, watchdog: WatchdogControl, readback: ReadbackCheck) -> None:
         self._held = plan.held
+        self._room_s = room_s
+        self._began_s = -inf  # of the last tick
         self._watchdog = watchdog
         self._rule = readback
         self._sent: float | None = None  # None: what the device should hold is not known
@@ -51,7 +55,8 @@ class SecondMaster:
         within `WINDOW_S`; what `ask` raises.
         """
         expected, self._sent = self._sent, None
-        if expected is None or self._held is None or now_s < self._due_s:
+        hurried, self._began_s = now_s - self._began_s < self._room_s, now_s
+        if expected is None or self._held is None or hurried or now_s < self._due_s:
             return None
         held = self._read(self._held, ask)
         if held is not None and abs(held - expected) <= self._rule.tolerance:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from hal.channel import Channel, channel
@@ -123,11 +123,21 @@ def min_period_s(plan: TickPlan, profile: Profile) -> float:
     Wire time of every frame, one t3.5 before and one after each request, and the devices' turnaround. Without pacing
     (a line that has no bits) only the turnaround counts.
     """
+    return _wire_s(requests_of(plan, profile), profile) / _SPARE
+
+
+def looking_period_s(plan: TickPlan, profile: Profile) -> float:
+    """The shortest tick [s] in which the read-back can be read alone, too."""
+    more = () if plan.held is None else (plan.held.request(),)
+    return _wire_s((*requests_of(plan, profile), *more), profile) / _SPARE
+
+
+def _wire_s(requests: Sequence[Request], profile: Profile) -> float:
     paced = profile.serial.pacing == "spec"
     char_s, silence_s = (profile.serial.char_s, profile.serial.silence_s) if paced else (0.0, 0.0)
     turnaround_s = {device.id: device.turnaround_ms / 1000.0 for device in profile.devices.values()}
     total_s = 0.0
-    for request in requests_of(plan, profile):
+    for request in requests:
         chars = len(request.pdu) + 3 + request.size + 3
         total_s += chars * char_s + 2.0 * silence_s + turnaround_s[request.unit]
-    return total_s / _SPARE
+    return total_s

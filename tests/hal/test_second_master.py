@@ -96,3 +96,15 @@ def test_our_own_safe_command_is_not_somebody_elses() -> None:
             assert tick(bench, clock, 9.0, dt_s=1.1).foreign_psi is None
         device.rig.request_command(4.0)
         assert tick(bench, clock, 9.0).foreign_psi == pytest.approx(4.0)
+
+
+@pytest.mark.parametrize(("period_s", "looks"), [(0.1, 5), (0.02, 5), (0.01, 0)])
+def test_ticks_that_leave_no_room_are_not_made_late_by_a_look(period_s: float, looks: int) -> None:
+    """At 115200 baud a tick and a look take 9.9 ms."""
+    fast = VIRTUAL.model_copy(update={"serial": VIRTUAL.serial.model_copy(update={"baud": 115200})})
+    with virtual(fast) as (device, clock), ModbusBench(fast, device.port, clock, pacing="spec", margin_s=1.0) as bench:
+        bench.arm()
+        before, ticks = bench.bus.stats.transactions, round(5.0 / period_s)
+        for _ in range(ticks):
+            tick(bench, clock, 5.0, dt_s=period_s)
+        assert bench.bus.stats.transactions - before == pytest.approx(ticks + looks, abs=1)
