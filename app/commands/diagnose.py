@@ -20,7 +20,8 @@ if TYPE_CHECKING:
     from twin.diagnose import Outcome
     from twin.diagnosis import Diagnosis
 
-#: What it means that nobody gave a design.
+_NO_DESIGN = "no --design given"
+#: What that means.
 _WITHOUT_DESIGN = {
     "the defaults": "the thesis's numbers are what the record is held against",
     "identified from the healthy recordings": "the gap is what has changed since",
@@ -110,7 +111,7 @@ def _diagnosed(
     outcome = None
     model, origin = design_for(design, recordings, golden)
     margin, known = _margin(golden, model)
-    said = known if design else (DataNote(f"no --design given: {origin}", _WITHOUT_DESIGN.get(origin, "")), *known)
+    said = known if design else (DataNote(f"{_NO_DESIGN}: {origin}", _WITHOUT_DESIGN.get(origin, "")), *known)
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
@@ -209,6 +210,9 @@ def _print(outcome: Outcome, out: Path, as_json: bool) -> None:
         click.echo(json.dumps(outcome.diagnosis.to_json(), indent=2))
         return
     click.echo(outcome.diagnosis.statement)
+    for note in outcome.diagnosis.data_quality:
+        if note.what.startswith(_NO_DESIGN):
+            click.echo(f"Mind: {note.what}; {note.handled}.")
     for names in outcome.diagnosis.confusable:
         click.echo(f"This data cannot tell apart: {', '.join(names)}.")
     proposed = outcome.diagnosis.next_experiment

@@ -82,11 +82,14 @@ def test_missing_values_doubled_rows_and_a_hole(healthy: Recording, tmp_path: Pa
 
 
 @pytest.mark.parametrize("words", ["after", "unknown"])
-def test_a_command_that_takes_effect_after_its_row(healthy: Recording, tmp_path: Path, words: str) -> None:
+def test_a_command_that_takes_effect_after_its_row(
+    healthy: Recording, tmp_path: Path, words: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     columns = columns_of(healthy)
     columns["command_psi"] = np.append(columns["command_psi"][1:], columns["command_psi"][-1])
     found = diagnosed(tmp_path / "d", write(tmp_path / "x.csv", columns), "--command-timing", words)
     assert found["verdict"] == "no_gap"
+    assert "Mind: no --design given: the defaults; the thesis's numbers are" in capsys.readouterr().out
 
 
 @pytest.mark.thorough
