@@ -5,8 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from control.design import DesignModel
+from tests.twin.judged import a_record
+from twin.catalog import effect
+from twin.choose.search import SearchRules
+from twin.diagnose import Settings, diagnose
 from twin.fit.numbers import retuned
 from twin.moved import moved_numbers
+from twin.plant import Inserted, Plant
 
 DESIGN = DesignModel()
 
@@ -26,3 +31,12 @@ def test_a_deadband_where_the_design_has_none() -> None:
     without = replace(DESIGN, a1=7.3, a2=7.3)
     (note,) = moved_numbers(without, retuned(without, {"deadband": 0.3}), ())
     assert "deadband 0.3 instead of 0 psi" in note.what
+
+
+def test_a_diagnosis_says_what_it_re_tuned_where_nothing_explains() -> None:
+    """A damping that grows with the speed alike both ways is nothing known; a longer lag takes most of it."""
+    damping = Inserted("asymmetric_damping", effect("asymmetric_damping").form("orifice_each_way"), (1.5, 1.5))
+    settings = Settings(search=SearchRules(most=1))
+    found = diagnose([a_record(Plant(DESIGN, (damping,)))], DESIGN, settings=settings).diagnosis
+    assert found.verdict == "unexplained"
+    assert any("the updated model has tau 3.4" in note.what for note in found.data_quality)

@@ -31,6 +31,10 @@ def test_what_only_says_how_it_goes_is_left_to_the_table() -> None:
     assert "tail" not in said(one("creep", "one_tail", share=0.2, tail=20.0))
 
 
+def test_where_no_number_says_how_large_it_is_all_are_said() -> None:
+    assert "friction_in_motion (presliding 0.004; pro" in said(one("friction_in_motion", "elastic", presliding=0.004))
+
+
 def test_a_cause_that_was_seen_in_the_readings_keeps_its_numbers() -> None:
     assert "sensor_dropouts (rate 0.01; probability" in said(one("sensor_dropouts", "", rate=0.01))
 
