@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 import threading
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from types import FrameType
@@ -50,6 +50,21 @@ def stop_signals() -> Iterator[StopRequest]:
 
 
 @contextmanager
+def terminable() -> Iterator[None]:
+    """While open, SIGTERM and a closed terminal raise `Stopped` at once, as Ctrl-C interrupts a job without ticks.
+
+    What somebody has switched off stays off: under nohup a computation outlives its terminal.
+    """
+    heard = [n for n in _NAMES if n != "SIGINT" and signal.getsignal(getattr(signal, n)) != signal.SIG_IGN]
+    with _handlers(_stop, heard):
+        yield
+
+
+def _stop(number: int, _frame: FrameType | None) -> None:
+    raise Stopped(signal.Signals(number).name)
+
+
+@contextmanager
 def shielded() -> Iterator[None]:
     """While open, signals wait: for the few moments in which the valve is sent to safety.
 
@@ -63,11 +78,11 @@ def shielded() -> Iterator[None]:
 
 
 @contextmanager
-def _handlers(handler: Callable[[int, FrameType | None], Any]) -> Iterator[None]:
+def _handlers(handler: Callable[[int, FrameType | None], Any], names: Sequence[str] = _NAMES) -> Iterator[None]:
     if threading.current_thread() is not threading.main_thread():
         yield  # only the main thread may have handlers, and only it gets signals
         return
-    before = {name: signal.signal(getattr(signal, name), handler) for name in _NAMES}
+    before = {name: signal.signal(getattr(signal, name), handler) for name in names}
     try:
         yield
     finally:

@@ -17,6 +17,7 @@ from logs.recording import DataNote, FloatArray, Recording
 from twin.catalog import effect
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.trial import make_trial
+from twin.noise.blurred import resultant
 from twin.noise.lattice import missing_codes, rounding_bias
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
@@ -62,7 +63,7 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
 def _beside_zero(recordings: Sequence[Recording], step: float) -> bool:
     """Whether the codes lie beside zero and all whole steps from there."""
     positions = np.concatenate([r.position[np.isfinite(r.position)] for r in recordings])
-    return abs(float(np.angle(np.mean(np.exp(2j * np.pi * positions / step))))) > 2.0 * np.pi * _BESIDE
+    return abs(float(np.angle(resultant(positions, step)))) > 2.0 * np.pi * _BESIDE
 
 
 def _beyond(error: FloatArray, half: float) -> FloatArray:

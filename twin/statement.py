@@ -78,9 +78,10 @@ def _at_most(diagnosis: Diagnosis) -> str:
 
 
 def _named(cause: Cause) -> str:
-    """The cause with its sizes; numbers that only say how it goes are in the table."""
+    """The cause with its sizes; of a curve that many numbers give (`zero_1`, `zero_2`, ...) the largest."""
+    curve = [e for name, e in cause.parameters.items() if _KNOT.search(name)]
     told = [f"{name} {_sized(e)}" for name, e in _sizes(cause).items()]
-    told += [f"up to {_sized(e)}" for e in _knots(cause).values()]
+    told += [f"up to {_sized(max(curve, key=lambda e: abs(e.value)))}"] if curve else []
     plain = cause.name.removeprefix("parameter:")
     return f"{plain} ({', '.join(told)}; probability {cause.probability:.2f})" if told else plain
 
@@ -90,16 +91,9 @@ def _sized(one: Estimate) -> str:
 
 
 def _sizes(cause: Cause) -> Mapping[str, Estimate]:
-    """Of a cause's numbers those that say how large it is, all of them where none does; without those of `_knots`."""
+    """Of a cause's numbers those that say how large it is, and all where none does; none of a curve."""
     effect = effects().get(cause.name)
     form = next((f for f in effect.forms if f.name == cause.form), None) if effect is not None else None
     shapes = {p.name for p in form.parameters if not p.size} if form is not None else set()
-    plain = {name: e for name, e in cause.parameters.items() if not _KNOT.search(name)}
-    return {name: e for name, e in plain.items() if name not in shapes} or (plain if not _knots(cause) else {})
-
-
-def _knots(cause: Cause) -> Mapping[str, Estimate]:
-    """The largest of the numbers of a curve that is given by many (`zero_1`, `zero_2`, ...)."""
-    many = {name: e for name, e in cause.parameters.items() if _KNOT.search(name)}
-    largest = max(many, key=lambda name: abs(many[name].value), default=None)
-    return {} if largest is None else {largest: many[largest]}
+    sizes = {name: e for name, e in cause.parameters.items() if name not in shapes} or cause.parameters
+    return {name: e for name, e in sizes.items() if not _KNOT.search(name)}

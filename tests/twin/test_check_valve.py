@@ -7,7 +7,9 @@ import pytest
 
 from tests.twin.judged import a_record
 from tests.twin.loops import FRICTIONS, PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
+from twin.catalog import effect
 from twin.diagnose import diagnose
+from twin.plant import Inserted, Plant
 
 WAYS = ("closing", "opening")
 
@@ -36,6 +38,16 @@ def test_like_small_steps_of_its_law(friction: str, way: str, eases: float, abov
     assert np.max(np.abs(at_once(one) - law)) < 0.003 * D.travel
     assert np.max(np.abs(law - in_small_steps(friction, way, 0.0, above))) > 0.01 * D.travel
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_a_heavy_stem_has_it_too(way: str) -> None:
+    """With hardly any mass it moves as without, and so it does in the live twin."""
+    light = plant("before the lag", "asymmetric_damping", f"check_valve_{way}", (4.0, 0.3))
+    mass = Inserted("additional_lag", effect("additional_lag").form("inertia"), (0.01,))
+    heavy = Plant(light.design, (*light.inserted, mass))
+    assert np.max(np.abs(at_once(heavy) - at_once(light))) < 0.005 * D.travel
+    assert np.allclose(row_by_row(heavy), at_once(heavy), atol=1e-9)
 
 
 @pytest.mark.parametrize("way", WAYS)

@@ -83,9 +83,8 @@ def test_the_stop_takes_the_speed() -> None:
     """Else the stem would stay at it while the pull is already back."""
     time_s = np.array([0.0, 0.1])
     offsets, out, state = np.array([0, 5]), np.empty(6), np.array([0.5, 0.3])
-    inertia_pass(
-        time_s, offsets, np.full(6, 0.5), np.full(2, 2.7), np.full(2, 0.12), np.array([0.0, 0.5]), 2.0, state, out
-    )
+    lags_s, rates, stops = np.full(2, 2.7), np.full(2, 0.12), np.array([0.0, 0.5])
+    inertia_pass(time_s, offsets, np.full(6, 0.5), lags_s, rates, stops, 2.0, (0.0, 0.0, 0.0), state, out)
     assert np.all(out == 0.5) and state[1] == 0.0
 
 

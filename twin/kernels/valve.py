@@ -177,11 +177,12 @@ def move_stem(
     """Fills `out` with the stem that follows `target`; moves `state` (stem, speed) on."""
     low, high = stem_stops(c)
     lags_s, rates = c[[V_TAU_CLOSE_S, V_TAU_OPEN_S]], c[[V_RATE_CLOSE, V_RATE_OPEN]]
+    eases = (c[V_EASES], c[V_EASES + 1], c[V_EASES_AT])
     if c[V_INERTIA_S] > _AT_ONCE_S:
-        inertia_pass(time_s, offsets, target, lags_s, rates, np.array([low, high]), c[V_INERTIA_S], state, out)
+        stops = np.array([low, high])
+        inertia_pass(time_s, offsets, target, lags_s, rates, stops, c[V_INERTIA_S], eases, state, out)
         return
-    if c[V_EASES] > 0.0 or c[V_EASES + 1] > 0.0:
-        eases = (c[V_EASES], c[V_EASES + 1], c[V_EASES_AT])
+    if eases[0] > 0.0 or eases[1] > 0.0:
         eased_pass(time_s, offsets, target, lags_s, rates, (low, high), eases, state[0], out)
     else:
         stem_pass(time_s, offsets, target, lags_s, rates, low, high, state[0], out)
