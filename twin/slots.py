@@ -56,7 +56,8 @@ EP_SUBSONIC = 36  # choked flow from a supply of EP_CLIP over what the lag takes
 EP_CLOG_UP = 37  # what a clogged passage adds to the lag of a rising pressure, for each unit of its slope [s2/pressure]
 EP_CLOG_DOWN = 38  # and of a falling one
 EP_SHUT = 39  # error at which a pilot that has opened shuts again, as a share of EP_BAND (EP_BAND_MODE 5) [-]
-EP_COUNT = 40
+EP_TANK_CUTS = 40  # 1: the sunk supply cuts the pressure off, as EP_CLIP does; 0: it is what the lag aims at
+EP_COUNT = 41
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -15,6 +15,7 @@ from twin.choose.decide import Decision, decide
 from twin.choose.lean import leaning
 from twin.choose.rules import DecisionRules
 from twin.choose.search import Searcher, SearchRules
+from twin.choose.unbent import unbent
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit
 from twin.fit.numbers import nominal, retuned
@@ -198,7 +199,7 @@ def _judge(
 ) -> Decision:
     searcher = Searcher(channel, case.base, case.scales, search, progress, _resting(case, channel))
     watch(searcher)
-    return leaning(decide(searcher.run(), rules, floor), case.scales, rules)
+    return leaning(unbent(decide(searcher.run(), rules, floor), case.scales), case.scales, rules)
 
 
 def _resting(case: Case, channel: Channel) -> float:

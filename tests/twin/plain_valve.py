@@ -42,6 +42,7 @@ class PlainValve:
     clog_fall: float = 0.0
     mixed: float = 0.0  # lag of the command as it comes out of the delay
     tank: float = inf  # a supply that sinks by 0.4 of every rise and comes back in 20 s
+    tank_cuts: bool = False  # whether it cuts the pressure off, instead of being what the converter aims at
     cut_off: float = inf
     a1: float = 8.78
     a2: float = 5.82
@@ -92,7 +93,8 @@ class PlainValve:
             t = i * step_s
             held = u if abs(u - held) > self.hold_band else held
             before = p
-            p = self._pressure(p, min(self._softly(self.zero + self.gain * held), self.tank - sunk), step_s)
+            aimed, cut = (inf, self.tank - sunk) if self.tank_cuts else (self.tank - sunk, inf)
+            p = min(self._pressure(p, min(self._softly(self.zero + self.gain * held), aimed), step_s), cut)
             sunk += 0.4 * max(p - before, 0.0) - sunk * step_s / 20.0
             w = self._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag

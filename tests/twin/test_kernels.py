@@ -92,6 +92,10 @@ SAME = {
     "ep_rate_limit": (plant_with("ep_rate_limit", "symmetric", 0.5), PlainValve(pressure_rate=2.0)),
     "supply": (plant_with("supply_saturation", "ceiling", 10.5), PlainValve(supply=10.5)),
     "sinking": (plant_with("supply_saturation", "sinking", 12.5, 0.4, 20.0), PlainValve(tank=12.5)),
+    "sinking_cut_off": (
+        plant_with("supply_saturation", "sinking_cut_off", 12.5, 0.4, 20.0),
+        PlainValve(tank=12.5, tank_cuts=True),
+    ),
     "soft": (plant_with("supply_saturation", "soft", 11.5, 0.6), PlainValve(supply=11.5, knee=0.6)),
     "overlap": (plant_with("ep_deadband", "overlap", 0.3), PlainValve(overlap=0.3)),
     "dispersed": (plant_with("dead_time", "dispersed", 0.4, 0.5), PlainValve(delay=0.4, mixed=0.2)),

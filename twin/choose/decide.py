@@ -34,7 +34,8 @@ _ABOVE_BEST = 1.5
 class Decision:
     """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before.
 
-    `floor`: mean squared residual of the true model.
+    `floor`: mean squared residual of the true model. `imitates`: not explained, because the design numbers had to move
+    further than anybody believes.
     """
 
     findings: Findings
@@ -43,6 +44,7 @@ class Decision:
     gap: bool
     rest: float
     floor: float = 1.0
+    imitates: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -83,9 +85,10 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
     # what imitates must bend the numbers, and leaves something all the same
     imitates = bent_by(accepted) > rules.believed and accepted.mse > _EXACT * floor
-    explained = size > 0 and (rest < rules.unexplained or nothing_left) and not imitates
+    enough = size > 0 and (rest < rules.unexplained or nothing_left)
+    explained = enough and not imitates
     gap = explained or findings.none.mse > rules.quiet * floor
-    return Decision(findings, accepted, explained, gap, rest, floor)
+    return Decision(findings, accepted, explained, gap, rest, floor, enough and imitates)
 
 
 def _better(findings: Findings, accepted: Fit, rules: DecisionRules, floor: float) -> Fit | None:

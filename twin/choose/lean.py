@@ -76,18 +76,22 @@ class _Leaning:
         return None if self._left(self._with([best])) else best
 
     def _with(self, more: Sequence[Cause]) -> Fit:
-        """The accepted causes and these numbers, with every other number as designed."""
-        causes = (*self.decision.accepted.space.causes, *more)
-        numbers = tuple(c.name.removeprefix("parameter:") for c in causes if c.effect is None)
-        absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
-        kept = [n for n in self.decision.accepted.space.numbers if n in numbers or n in absorbed]
-        return _fitted(self.decision, causes, kept, self.scales)
+        return as_designed(self.decision, self.scales, more)
 
     def _left(self, one: Fit) -> bool:
         """Whether much of the gap is left."""
         decision = self.decision
         gap = decision.findings.none.mse - decision.floor
         return one.mse - decision.accepted.mse > max(_SHARE * gap, _LEAST)
+
+
+def as_designed(decision: Decision, scales: Scales, more: Sequence[Cause] = ()) -> Fit:
+    """The accepted causes, and `more`, with every number as designed that none of them accuses or absorbs."""
+    causes = (*decision.accepted.space.causes, *more)
+    numbers = {c.name.removeprefix("parameter:") for c in causes if c.effect is None}
+    absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
+    kept = [n for n in decision.accepted.space.numbers if n in numbers or n in absorbed]
+    return _fitted(decision, causes, kept, scales)
 
 
 def _fitted(decision: Decision, causes: Sequence[Cause], numbers: Sequence[str], scales: Scales) -> Fit:

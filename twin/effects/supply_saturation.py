@@ -16,6 +16,7 @@ from twin.slots import (
     EP_SUBSONIC,
     EP_SUPPLY,
     EP_TANK,
+    EP_TANK_CUTS,
 )
 
 _SUPPLY = Parameter(
@@ -41,6 +42,11 @@ def _soft(c: Coefficients, values: Sequence[float]) -> None:
 
 def _sinks(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[[EP_TANK, EP_DRAW, EP_REFILL_S]] = values
+
+
+def _sinks_below(c: Coefficients, values: Sequence[float]) -> None:
+    _sinks(c, values)
+    c.ep[EP_TANK_CUTS] = 1.0
 
 
 def _clip(c: Coefficients, values: Sequence[float]) -> None:
@@ -103,6 +109,7 @@ EFFECT = Effect(
     "and through a booster only what ISO 6358 lets flow from that supply; "
     "subsonic: where it rises, dp/dt = (u - p) / tau min(1, width flow(p, supply)), flow over choked flow (ISO 6358); "
     "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction); "
+    "sinking_cut_off: the same supply, with dp/dt = (u - p) / tau and p <= supply - s; "
     "soft: dp/dt = (v - p) / tau, v = -knee ln(exp(-u / knee) + exp(-supply / knee)) (a regulator that runs out of "
     "pressure difference little by little)",
     source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators); "
@@ -113,6 +120,7 @@ EFFECT = Effect(
         Form("subsonic", (_SUPPLY, _WIDTH), _subsonic),
         Form("soft", (_SUPPLY, _KNEE), _soft),
         Form("sinking", (_SUPPLY, _DRAW, _REFILL), _sinks),
+        Form("sinking_cut_off", (_SUPPLY, _DRAW, _REFILL), _sinks_below),
     ),
     twins=("ep_calibration",),
 )

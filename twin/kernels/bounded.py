@@ -25,6 +25,7 @@ from twin.slots import (
     EP_SHUT,
     EP_SUBSONIC,
     EP_TANK,
+    EP_TANK_CUTS,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
     FOREVER,
@@ -123,14 +124,16 @@ def follow_bounded(
 ) -> None:
     """A lag toward the goal with an overlap band and limited slope; kept: `state` (2,), how far the supply has sunk and
     whether a pilot that shuts later than it opens is open."""
-    per_row = goal.size == time_s.size
+    per_row, cuts = goal.size == time_s.size, c[EP_TANK_CUTS] > 0.0
     p = p0
     out[0] = p
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            v = min(goal[i] if per_row else goal[f], c[EP_TANK] - state[0])
+            v, tank = goal[i] if per_row else goal[f], c[EP_TANK] - state[0]
+            v = v if cuts else min(v, tank)
             new = _gated_step(p, v, h, c, state) if c[EP_BAND_MODE] == 5.0 else _bounded_step(p, v, h, c)
+            new = min(new, tank) if cuts else new
             if c[EP_TANK] < FOREVER:
                 state[0] = state[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
             p = new
