@@ -120,7 +120,12 @@ V_GIVE_HIGH = 53
 V_FADES_SQUARED = 54  # 1: the extra friction falls with the square of the speed, as a Gaussian curve
 V_EASES = 55  # by how much more a stem that closes, and (56) opens, gains speed with what pulls it above a speed [-]
 V_EASES_AT = 57  # and that speed [position/s]
-V_COUNT = 58
+V_BREAKS = 58  # by how much more pressure it takes from then on [pressure]
+V_BREAKS_S = 59  # and when a spring breaks [s]; FOREVER: it does not
+V_STIFFENS = 60  # excess of its rate then, as a share
+V_MIDDLE = 61  # pressures from which that holds: of the spring at position 0, and what friction adds to it
+V_HALF = 62
+V_COUNT = 63
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -207,7 +212,7 @@ def neutral_valve() -> FloatArray:
 @cache
 def _valve() -> FloatArray:
     c = np.zeros(V_COUNT)
-    c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S]] = FOREVER
+    c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S, V_BREAKS_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
     c[[V_GIVE_LOW, V_GIVE_HIGH]] = 1.0

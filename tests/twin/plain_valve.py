@@ -54,6 +54,9 @@ class PlainValve:
     stretch: Shape = _nothing  # extra compliance where the stem is by now, as a share
     widen: Shape = _nothing  # extra half deadband at position w
     grow: Shape = _nothing  # extra half deadband at time t
+    breaks_s: float = inf  # when the spring breaks, by how much more pressure it takes then, and the excess of its rate
+    takes: float = 0.0
+    stiffens: float = 0.0
     tau_close: float = 2.7
     tau_open: float = 2.7
     rate: float = 0.12
@@ -81,6 +84,8 @@ class PlainValve:
         fine = self._mixing(np.concatenate([np.full(late, command[0]), fine])[: rows[-1]], step_s)
         p = held = command[0]
         free = replace(self, breakaway=0.0)
+        k1, k2 = self.k1 / (1.0 + self.stiffens), self.k2 / (1.0 + self.stiffens)
+        broken = replace(self, a1=self.a1 + self.takes, a2=self.a2 + self.takes, k1=k1, k2=k2)
         w = v = free._play(
             p - self.push(x0), x0, 0.0, self.grip(x0), self.stretch(x0)
         )  # the play output that pressure allows
@@ -96,7 +101,8 @@ class PlainValve:
             aimed, cut = (inf, self.tank - sunk) if self.tank_cuts else (self.tank - sunk, inf)
             p = min(self._pressure(p, min(self._softly(self.zero + self.gain * held), aimed), step_s), cut)
             sunk += 0.4 * max(p - before, 0.0) - sunk * step_s / 20.0
-            w = self._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
+            now = self if t < self.breaks_s else broken
+            w = now._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
             tau = self.tau_close if v > x else self.tau_open
             speed = min(max((v - x) / tau, -self.rate), self.rate)

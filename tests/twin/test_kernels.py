@@ -112,6 +112,10 @@ SAME = {
     "spring": (plant_with("spring_asymmetry", "hinged_open", 0.1), PlainValve(k1=0.19 / 0.9, k2=0.19 / 1.1)),
     "nonlinear_spring": (plant_with("nonlinear_spring", "bow", 0.4), PlainValve(bend=bow)),
     "friction_spot": (plant_with("position_dependent_friction", "spot", 0.3, 0.5, 0.15), PlainValve(widen=spot)),
+    "spring_breaks": (
+        plant_with("nonlinear_spring", "breaks", -0.6, 0.2, 0.5),
+        PlainValve(breaks_s=29.95, takes=-0.6, stiffens=0.2),
+    ),
     "flow_at_stem": (plant_with("flow_force", "stem_square", 0.4), PlainValve(push=lambda x: 0.4 * (x / TRAVEL) ** 2)),
     "flow_hump": (plant_with("flow_force", "stem_hump", 0.4), PlainValve(push=bow)),
     "spring_at_stem": (plant_with("nonlinear_spring", "stem_bow", 0.4), PlainValve(push=bow)),

@@ -55,6 +55,7 @@ def answered(*records: Recording) -> Outcome:
             with_form("ep_calibration", "zero_drifts", 0.01, 0.06, 120.0),
             "the zero of the converter or of its gauge drifts",
         ),
+        (with_form("nonlinear_spring", "breaks", -0.2, 0.05, 0.6), "the spring changes all at once"),
         (with_form("nonlinear_spring", "snaps", 0.5, 0.45, 0.5), SNAPS),
         (with_form("nonlinear_spring", "stem_snaps", 0.7, 0.55, 0.5), SNAPS),
         (with_form("asymmetric_damping", "orifice_each_way", 1.5, 1.5), ALIKE),
@@ -176,6 +177,7 @@ def test_no_rival_is_in_an_updated_model() -> None:
         ("sensor_lag", "leads"),
         ("ep_rate_limit", "stroke"),
         *snaps,
+        ("nonlinear_spring", "breaks"),
     }
     record = a_record(with_form("lvdt_drift", "jump", 0.02, 0.43))
     assert not answered(record).model.effects

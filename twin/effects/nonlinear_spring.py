@@ -10,6 +10,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.shapes import CENTRE, WIDTH, bow, edge, swing
+from twin.slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
 
 
 def _parameter(name: str, doc: str) -> Parameter:
@@ -114,6 +115,13 @@ def _stem_snaps(c: Coefficients, values: Sequence[float]) -> None:
     c.bend_at_stem(shift, shift)
 
 
+def _breaks(c: Coefficients, values: Sequence[float]) -> None:
+    before_s, all_s = c.course_s
+    c.valve[[V_BREAKS, V_STIFFENS]] = values[:2]
+    c.valve[V_BREAKS_S] = max(values[2] * all_s - before_s, 0.0)
+    c.valve[[V_MIDDLE, V_HALF]] = c.design.offset, 0.5 * (c.design.a1 - c.design.a2)
+
+
 _BOW = _parameter("bow", "extra pressure needed at mid travel, on both curves")
 _SWING = _parameter("swing", "amplitude of the S-shaped part: extra pressure at 21 % of travel, less at 79 %")
 
@@ -184,6 +192,20 @@ _STEEPER = Parameter(
 )
 #: A jump that is looked for at another place, or a little less long, than it is may be no help at all.
 _SNAPS_AT = replace(_CENTRE, lower=0.0, starts=tuple(k / 20 for k in range(2, 19)), neutral=0.0, smooth=False)
+_TAKES = replace(_parameter("takes", "by how much more pressure it takes from then on"), lower=-4.0, upper=4.0)
+_RATE = replace(_STIFFER, name="rate", lower=-0.6, upper=1.5, starts=(0.0,), doc="excess of its rate from then on")
+_WHEN = Parameter(
+    name="when",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=tuple(0.02 + 0.96 * (0.5 + k) / 24 for k in range(24)),
+    scale=0.2,
+    doc="when it changes, fraction of all recordings",
+    neutral=0.5,
+    smooth=False,
+    size=False,
+)
 _SNAPS = "the spring gives way at a place, and the stem snaps through"
 
 EFFECT = Effect(
@@ -196,7 +218,8 @@ EFFECT = Effect(
     "step: s = stiffer travel/k width E, E = (1 + tanh(2 (xi - centre) / width)) / 2; "
     "helper: s = stiffer travel/k max(xi - from, 0); "
     "area_step: p (1 + larger (E - 1/2)); "
-    "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring",
+    "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring; "
+    "breaks: from a time on p = (a1 + a2)/2 + takes +- (a1 - a2)/2 + (1 + rate) w/k",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
     forms=(
         Form("bow", (_BOW,), _bow),
@@ -213,6 +236,7 @@ EFFECT = Effect(
         Form("area_step", (replace(_AREA, name="larger"), _CENTRE, _WIDTH), _area_step),
         Form("snaps", (_DROP, _SNAPS_AT, _STEEPER), _snaps, outside=_SNAPS),
         Form("stem_snaps", (_DROP, _SNAPS_AT, _STEEPER), _stem_snaps, outside=_SNAPS),
+        Form("breaks", (_TAKES, _RATE, _WHEN), _breaks, outside="the spring changes all at once"),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),

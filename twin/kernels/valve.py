@@ -24,7 +24,10 @@ from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
 from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched
 from twin.slots import (
+    FOREVER,
     V_BREAKAWAY,
+    V_BREAKS,
+    V_BREAKS_S,
     V_DAHL,
     V_DAHL_HALF,
     V_DRAG_CLOSE_S,
@@ -36,12 +39,14 @@ from twin.slots import (
     V_EASES_AT,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
+    V_HALF,
     V_HELD,
     V_HIGH,
     V_IN_MOTION,
     V_INERTIA_S,
     V_KEPT,
     V_LOW,
+    V_MIDDLE,
     V_ON_STEM,
     V_OUTER,
     V_OUTER_CENTRE,
@@ -55,6 +60,7 @@ from twin.slots import (
     V_SQUARED_S,
     V_STEP,
     V_STEP_TIME_S,
+    V_STIFFENS,
     V_STRETCHES,
     V_STRIBECK,
     V_TARGET_CREEPS,
@@ -190,11 +196,15 @@ def move_stem(
 
 
 def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: FloatArray, w0: float) -> FloatArray:
-    """The pressure that reaches the play: lagged, creeping, behind an outer play."""
+    """The pressure that reaches the play: lagged, creeping, after a break what the old spring takes as much of, behind
+    an outer play."""
     force = lagged(time_s, offsets, pressure, c[V_TAU_BEFORE_S])
     if c[V_FORCE_CREEP] != 0.0:
         late = lagged(time_s, offsets, force, c[V_FORCE_CREEP_TAU_S])
         force = force + c[V_FORCE_CREEP] * (late - force)
+    if c[V_BREAKS_S] < FOREVER:
+        unbroken = c[V_MIDDLE] + (force - c[V_MIDDLE] - c[V_BREAKS]) / (1.0 + c[V_STIFFENS])
+        force = np.where(elapsed_s(time_s, offsets) < c[V_BREAKS_S], force, unbroken)
     if c[V_OUTER] > 0.0:
         inner = np.empty_like(force)
         plain_play(force, c[V_OUTER], c[V_OUTER_CENTRE] + c[V_OUTER_SLOPE] * w0, inner)
@@ -207,7 +217,7 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
 
     An outer play takes its width from that of the play behind it.
     """
-    if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
+    if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP, V_STIFFENS]].any():
         return np.array([-c[V_OUTER]])
     t = elapsed_s(time_s, offsets)
     widening: FloatArray = c[V_DRIFT_RATE] * t - c[V_OUTER]
@@ -215,4 +225,6 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
         widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
     if c[V_STEP] != 0.0:
         widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
+    if c[V_STIFFENS] != 0.0:  # the same friction is less of a stiffer spring
+        widening[t >= c[V_BREAKS_S]] += c[V_HALF] * (1.0 / (1.0 + c[V_STIFFENS]) - 1.0)
     return widening
