@@ -127,7 +127,8 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     result, judgement, parts = hearing.held_out(result, known.judgement, progress, case.sigma_y)
     everything = replace(everything, decisions=result.decisions)
     known.judgement = judgement
-    known.notes += tied_note([c.name for c in judgement.causes])
+    if judgement.verdict != "no_gap":
+        known.notes += tied_note([c.name for c in judgement.causes], case.base)
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

@@ -2,8 +2,8 @@
 
 Blocks are long against the valve's lags and alternate, so that both halves see all conditions of the excitation. Each
 fit begins where that of the whole record ended and is tied to it: loosely, so that what its rows say outweighs the tie,
-but firmly where a cause is erratic, which leaves the prediction less blind and is said in the answer. Everything is
-predicted from the command alone: the whole chain.
+but firmly where a cause, or what the design has, is erratic, which leaves the prediction less blind and is said in the
+answer. Everything is predicted from the command alone: the whole chain.
 """
 
 from __future__ import annotations
@@ -28,8 +28,8 @@ BLOCKS = 16
 _LONG_S = 20.0
 #: What the rows of a fold say nothing about stays within so many standard deviations of where the whole record put it.
 _LOOSE = 20.0
-#: The same where a cause is erratic. A slip that comes one row earlier is a jump in the squares: half of the rows would
-#: buy the time of one of theirs with the times of many others.
+#: The same where a cause, or what the design has, is erratic. A slip that comes one row earlier is a jump in the
+#: squares: half of the rows would buy the time of one of theirs with the times of many others.
 _FIRM = 0.3
 
 
@@ -68,7 +68,7 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
 
     A supply that is met in a single block cannot be learned from the others; that is no evidence against it. So every
     unknown is tied to where it ended, but so loosely that whatever these rows do say about it outweighs the tie; not so
-    where a cause is erratic (see `_FIRM`).
+    where a cause, or what the design has, is erratic (see `_FIRM`).
     """
     return [
         fit(channel, one.space, [one.z], rounds=rounds, weights=weights, anchor=_tie(one))
@@ -79,17 +79,19 @@ def refitted(fits: Sequence[Fit], channels: Sequence[Channel], weights: FloatArr
 def _tie(one: Fit) -> tuple[FloatArray, FloatArray]:
     units = np.abs([u.unit for u in one.space.unknowns])
     deviations = one.deviations(max(one.mse, 1.0) ** 0.5) / units
-    return one.z, np.maximum((_FIRM if _erratic(one.names) else _LOOSE) * deviations, 1e-6)
+    return one.z, np.maximum((_FIRM if _erratic(one.names, one.space.base) else _LOOSE) * deviations, 1e-6)
 
 
-def _erratic(names: Sequence[str]) -> list[str]:
+def _erratic(names: Sequence[str], base: Plant) -> list[str]:
+    """What is erratic of these causes and of what the design has."""
     known = effects()
-    return [name for name in names if name in known and known[name].erratic]
+    there = dict.fromkeys([*names, *(one.effect for one in base.inserted)])
+    return [name for name in there if name in known and known[name].erratic]
 
 
-def tied_note(names: Sequence[str]) -> list[DataNote]:
-    """What to say of the held-out error, where one of the named causes is erratic."""
-    erratic = " and ".join(_erratic(names))
+def tied_note(names: Sequence[str], base: Plant) -> list[DataNote]:
+    """What to say of the held-out error, where one of the named causes is erratic, or an effect of the design."""
+    erratic = " and ".join(_erratic(names, base))
     if not erratic:
         return []
     handled = (

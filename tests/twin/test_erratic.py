@@ -25,27 +25,32 @@ def recorded(name: str, form: str, values: tuple[float, ...]) -> Recording:
     return a_record(Plant(DESIGN, (Inserted(name, effect(name).form(form), values),)))
 
 
-def fitted(name: str, form: str, values: tuple[float, ...]) -> tuple[Case, Channel, Fit]:
-    """A cause and the numbers of the design, from where they are true."""
+def fitted(name: str, form: str, values: tuple[float, ...], known: bool = False) -> tuple[Case, Channel, Fit]:
+    """A cause and the numbers of the design, from where they are true; `known`: it is a part of the design."""
     one = effect(name)
-    case = make_case([recorded(name, form, values)], DESIGN)
+    inserted = (Inserted(name, one.form(form), values),) if known else ()
+    case = make_case([recorded(name, form, values)], DESIGN, inserted)
     channel = chain_channel(case.trials, case.sigma_y)
     numbers = ["deadband", "offset", "compliance", "tau", "rate_limit"]
-    space = make_space(Plant(DESIGN), [Cause(name, one, one.form(form))], numbers, case.scales)
-    true = np.array(
-        [0.0] * len(numbers) + [v / u.unit for v, u in zip(values, space.unknowns[-len(values) :], strict=True)]
-    )
+    causes = [] if known else [Cause(name, one, one.form(form))]
+    space = make_space(Plant(DESIGN, inserted), causes, numbers, case.scales)
+    own = space.unknowns[len(numbers) :]
+    true = np.array([0.0] * len(numbers) + [v / u.unit for v, u in zip(values, own, strict=False)])
     return case, channel, fit(channel, space, [true])
 
 
 @pytest.mark.parametrize(
-    ("name", "form", "values", "stays"),
-    [("stiction", "target_sticks", (0.1, 0.0035), True), ("creep", "one_tail", (0.05, 20.0), False)],
+    ("name", "form", "values", "known", "stays"),
+    [
+        ("stiction", "target_sticks", (0.1, 0.0035), False, True),
+        ("stiction", "target_sticks", (0.1, 0.0035), True, True),
+        ("creep", "one_tail", (0.05, 20.0), False, False),
+    ],
 )
 def test_half_of_the_rows_hardly_bend_the_numbers_of_what_sticks(
-    name: str, form: str, values: tuple[float, ...], stays: bool
+    name: str, form: str, values: tuple[float, ...], known: bool, stays: bool
 ) -> None:
-    case, channel, found = fitted(name, form, values)
+    case, channel, found = fitted(name, form, values, known)
     deviations = found.deviations(max(found.mse, 1.0) ** 0.5)
     again = [refitted([found], [channel], weights)[0] for weights in fold_weights(case)]
     bent = max(float(np.max(np.abs(a.values() - found.values()) / deviations)) for a in again)
