@@ -50,10 +50,10 @@ def heldout_parts(
     before = predict_heldout(case, case.base, [], [])
     again = predict_heldout(case, case.base, [retuned], [chain])
     named = [d for d in result.decisions if d.explained]
-    if judgement.verdict == "no_gap":
-        after = before
-    elif judgement.verdict == "unexplained" or not named:
+    if judgement.verdict == "unexplained":
         after = again
+    elif judgement.verdict == "no_gap" or not named:  # what the readings themselves show leaves the design as it is
+        after = before
     else:
         after = _predicted(case, {d: d.accepted for d in named})
     if "sensor_dropouts" in sensing.accepted and judgement.verdict != "unexplained":

@@ -125,7 +125,9 @@ V_BREAKS_S = 59  # and when a spring breaks [s]; FOREVER: it does not
 V_STIFFENS = 60  # excess of its rate then, as a share
 V_MIDDLE = 61  # pressures from which that holds: of the spring at position 0, and what friction adds to it
 V_HALF = 62
-V_COUNT = 63
+V_STEP_EASES = 63  # share of V_STEP that is gone in the end, and with which time constant it goes [s]
+V_STEP_EASES_S = 64
+V_COUNT = 65
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0
@@ -215,6 +217,7 @@ def _valve() -> FloatArray:
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S, V_BREAKS_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
+    c[V_STEP_EASES_S] = 1.0
     c[[V_GIVE_LOW, V_GIVE_HIGH]] = 1.0
     c[V_TRAVEL] = 1.0
     return c

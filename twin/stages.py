@@ -24,7 +24,7 @@ from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
 from twin.in_steps import in_steps
 from twin.plant import Plant
-from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position, still_denied
+from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position, missed_of_position, still_denied
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25
@@ -119,7 +119,9 @@ def _by_witness(case: Case, first: Decision) -> _Heard:
     read, left = left_of_position(case, trials), left_of_position(case, modelled)
     if first.names:
         designed = driven_by_model(first.findings.none.plant, case.trials)
-        if gauge_lies(min(read, left), left_of_position(case, designed)):
+        with_it = min(missed_of_position(case, driven) for driven in (trials, modelled))
+        same_all_along = gauge_lies(with_it, missed_of_position(case, designed))
+        if same_all_along or gauge_lies(min(read, left), left_of_position(case, designed)):
             silent = replace(first, accepted=first.findings.none, explained=False, rest=1.0)
             return _Heard(silent, designed, True, first.names)
     believing = left_of_position(case, drive_by_measured(case, first, careful=False))

@@ -17,6 +17,7 @@ import numpy.typing as npt
 from logs.recording import DataNote, FloatArray, Recording
 from twin.case import Case, Span, fine_step_s
 from twin.fit.trial import Trial, make_trial
+from twin.hidden_steps import hidden_step_s
 from twin.noise.model import NoiseModel, SignalNoise
 from twin.place import Place
 from twin.refresh import Freshness
@@ -48,12 +49,13 @@ _JUMP = 0.005  # share of the command's span that is a jump
 
 def look_at(case: Case) -> tuple[Case, list[DataNote]]:
     """The case to search on: `case` itself when it is small, else a look at it that knows its whole."""
-    spans = _spans(case)
+    hidden_s = 0.0 if _short(case) else hidden_step_s(case, MOST_STEPS)
+    spans = _spans(case, _short(case) or hidden_s > 0.0)
     rows = sum(s.stop - s.start for s in spans)
     whole = sum(r.n for r in case.recordings)
-    if rows == whole <= MOST_ROWS:
+    if rows == whole <= MOST_ROWS and hidden_s == 0.0:
         return case, []
-    coarse_s = COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0
+    coarse_s = hidden_s or (COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0)
     share = _share(case, rows, coarse_s)
     trials = tuple(_trial(case, span, share, coarse_s) for span in spans)
     seen = sum(t.recording.n for t in trials)
@@ -66,7 +68,7 @@ def look_at(case: Case) -> tuple[Case, list[DataNote]]:
         whole=case,
         spans=spans,
     )
-    return look, [_note(case, trials, spans, rows, whole)]
+    return look, [_note(case, trials, spans, rows, whole, coarse_s)]
 
 
 def _share(case: Case, rows: int, coarse_s: float) -> float:
@@ -85,13 +87,15 @@ def on_everything(case: Case, result: StageResult) -> StageResult:
     return replace(result, case=case, trials=driven_again(case, result))
 
 
-def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int) -> DataNote:
+def _note(
+    case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int, coarse_s: float
+) -> DataNote:
     seen = sum(t.recording.n for t in trials)
     where = f"on {seen} rows all over it"
     if rows < whole:
         where = f"on {seen} rows in {len(spans)} windows spread over it"
     elif seen == whole:
-        where = f"on all of them in steps of {COARSE_STEP_S:g} s"
+        where = f"on all of them in steps of {coarse_s:.2g} s"
     return DataNote(
         f"a large record: {whole} rows, {sum(r.duration_s for r in case.recordings):.4g} s",
         f"causes are searched {where}; the gap is computed on all rows",
@@ -99,11 +103,17 @@ def _note(case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: 
     )
 
 
-def _spans(case: Case) -> tuple[Span, ...]:
+def _short(case: Case) -> bool:
+    """Whether a case is looked at whole whatever its noise may hide."""
     total_s = sum(r.duration_s for r in case.recordings)
     steps = sum(t.grid.n_fine for t in case.trials)
-    if total_s <= (COARSE_S if _hides_steps(case) else MOST_S) or steps <= MOST_STEPS:
+    return total_s <= (COARSE_S if _hides_steps(case) else MOST_S) or steps <= MOST_STEPS
+
+
+def _spans(case: Case, all_of_it: bool) -> tuple[Span, ...]:
+    if all_of_it:
         return tuple(Span(k, 0, r.n) for k, r in enumerate(case.recordings))
+    total_s = sum(r.duration_s for r in case.recordings)
     spans: list[Span] = []
     for k, recording in enumerate(case.recordings):
         budget_s = max(LOOK_S * recording.duration_s / total_s, 100.0 * case.base.design.tau_s)

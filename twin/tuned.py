@@ -26,7 +26,7 @@ def retuned_fit(case: Case) -> Fit:
 
 def _fitted(case: Case, channel: Channel) -> Fit:
     space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
-    return fit(channel, space, starts_of(space), rounds=20)
+    return fit(channel, space, starts_of(space, (), channel.recordings), rounds=20)
 
 
 def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignModel:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 
+import numpy as np
+
 from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.trim import doubtful
@@ -56,6 +58,8 @@ def upheld(
     if not judgement.causes:
         return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
+        if {c.name for c in judgement.causes} == {"sensor_quantization"} and before > _coarse(floor, sensing.step):
+            return _unexplained(parts, judgement)
         return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
     # what the pressure shows need not reach the stem, unless that is clearly off
     told = before <= CLEAR * floor and {c.name for c in judgement.causes} <= set(shown)
@@ -68,6 +72,11 @@ def upheld(
     if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
         return _unexplained(parts, judgement)
     return parts, judgement
+
+
+def _coarse(floor: float, step: float) -> float:
+    """Error beyond which steps of a reading are not all that is wrong: more than noise and rounding leave."""
+    return float(np.hypot(DOUBTFUL * floor, 0.5 * step))
 
 
 def _follows_commands(causes: Collection[Cause]) -> bool:

@@ -48,6 +48,9 @@ def gauge_lies(found: float, designed: float) -> bool:
     `designed`: when the converter without it does. What the gauge does itself, a lag of its tube, looks in its reading
     like a converter's cause. Only where the valve passes for healthy when the design drives it: what is wrong behind
     the pressure may by chance make up for a part of what is wrong before it.
+
+    To be asked with the numbers as they are, too: what a gauge reads too high or too steep re-tuned numbers take over,
+    but that those and a fault of the converter cancel to the noise is no accident.
     """
     return designed <= SLIGHT and _denies(designed, found)
 
@@ -88,3 +91,9 @@ def left_of_position(case: Case, trials: Sequence[Trial]) -> float:
     channel = in_steps(case, position_channel(trials, case.sigma_y))
     space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
     return fit(channel, space, [np.zeros(len(space.unknowns))]).mse
+
+
+def missed_of_position(case: Case, trials: Sequence[Trial]) -> float:
+    """Mean square that the design leaves of the position with its numbers as they are, noise = 1."""
+    channel = in_steps(case, position_channel(trials, case.sigma_y))
+    return fit(channel, make_space(case.base, (), (), case.scales), [np.zeros(0)]).mse

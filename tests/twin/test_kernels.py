@@ -123,6 +123,10 @@ SAME = {
     "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),
     "drift": (plant_with("friction_drift", "linear", 0.01), PlainValve(grow=lambda t: 0.01 * t)),
     "sudden": (plant_with("friction_drift", "sudden", 0.4, 0.5), PlainValve(grow=lambda t: 0.4 * (t >= 29.9))),
+    "easing": (
+        plant_with("friction_drift", "sudden_easing", 0.4, 0.5, 0.6, 30.0),
+        PlainValve(grow=lambda t: 0.4 * (1.0 - 0.6 * (1.0 - np.exp(-(t - 29.95) / 30.0))) * (t >= 29.9)),
+    ),
     "damping": (plant_with("asymmetric_damping", "two_lags", 0.3), PlainValve(tau_close=3.51, tau_open=1.89)),
     "in_motion": (plant_with("friction_in_motion", "full"), PlainValve(in_motion=True)),
     "stiction": (plant_with("stiction", "one_jump", 0.6), PlainValve(breakaway=0.6)),

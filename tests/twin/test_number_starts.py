@@ -31,6 +31,22 @@ def test_a_rate_limit_that_the_design_never_meets_is_found(share: float) -> None
     assert found.values()[0] == pytest.approx(true.rate_limit, rel=0.03)
 
 
+@pytest.mark.parametrize("covered", [0.1, 0.7, 4.0])
+def test_a_deadband_is_looked_for_within_what_the_commands_cover(covered: float) -> None:
+    """Of a loop about its set point: from a start wider than its commands, the stem never moves."""
+    record = a_record(Plant(DesignModel()))
+    command = 9.0 + covered * (record.command - record.command.min()) / np.ptp(record.command)
+    channel = chain_channel(make_case([replace(record, command=command, pressure=None)], DesignModel()).trials, 4e-4)
+    space = make_space(Plant(DesignModel()), (Cause("parameter:deadband"),), ["deadband"], Scales())
+    started, always = (
+        sorted(float(z[0] * space.unknowns[0].unit) for z in starts_of(space, (), records))
+        for records in (channel.recordings, ())
+    )
+    near = sorted(set(started) - set(always))
+    assert set(always) <= set(started)
+    assert near == pytest.approx({0.1: [0.07], 0.7: [0.21, 0.49], 4.0: [1.2]}[covered])
+
+
 @pytest.mark.parametrize("missing", [0.11, 0.17, 0.265, 0.32])
 def test_a_stop_that_few_levels_pass_is_found(missing: float) -> None:
     """A start beyond what the record reached does nothing, and one far within it costs more than that."""

@@ -29,7 +29,7 @@ def look(
     monkeypatch.setattr(thin, "MOST_ROWS", most_rows)
     monkeypatch.setattr(thin, "LOOK_ROWS", most_rows)
     monkeypatch.setattr(thin, "MOST_S", most_s)
-    monkeypatch.setattr(thin, "MOST_STEPS", 0)
+    monkeypatch.setattr(thin, "MOST_STEPS", 1)
     monkeypatch.setattr(thin, "COARSE_S", coarse_s)
     monkeypatch.setattr(thin, "COARSE_ROWS", most_rows)
     monkeypatch.setattr(thin, "LOOK_S", 100.0)

@@ -30,10 +30,11 @@ from twin.plant import Inserted, Plant
 from twin.simulate import simulate_recording
 from twin.stages import driven_about, judge
 from twin.verdict import strays
-from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position
+from twin.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position, missed_of_position
 
 DESIGN = DesignModel()
 GAUGE_PSI = 0.03
+HIGH = Inserted("ep_calibration", effect("ep_calibration").form("gain_and_zero"), (0.0, 0.5))
 PLAY = Inserted("ep_deadband", effect("ep_deadband").form("play"), (0.018,))
 
 
@@ -110,6 +111,32 @@ def test_the_stem_denies_nothing_where_something_is_wrong_behind_the_pressure() 
     assert not gauge_lies(with_it, without)
     assert not gauge_lies(100.0, 1.01 * SLIGHT)  # however much more the reading leaves
     assert gauge_lies(100.0, 0.99 * SLIGHT)
+
+
+def high(gauge: bool) -> Recording:
+    """A valve whose pressure gauge reads 0.5 psi too much, or whose converter gives so much more."""
+    record = a_record(Plant(DESIGN))
+    pressure, position = simulate_recording(Plant(DESIGN, (HIGH,)), record)
+    if gauge:
+        _, position = simulate_recording(Plant(DESIGN), record)
+    return read(replace(record, pressure=pressure, position=position), 0.01)
+
+
+@pytest.mark.parametrize("gauge", [True, False])
+def test_what_a_gauge_reads_too_high_shows_with_the_numbers_as_they_are(gauge: bool) -> None:
+    """Re-tuned, the offset of the valve takes it over."""
+    case = make_case([high(gauge)], DESIGN)
+    with_it, without = (driven_by_model(Plant(DESIGN, i), case.trials) for i in ((HIGH,), ()))
+    assert gauge_lies(missed_of_position(case, with_it), missed_of_position(case, without)) is gauge
+    assert not gauge_lies(left_of_position(case, with_it), left_of_position(case, without))
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(("gauge", "denied"), [(True, ("ep_calibration",)), (False, ())])
+def test_a_gauge_that_reads_too_high_is_no_fault_of_the_converter(gauge: bool, denied: tuple[str, ...]) -> None:
+    result = judge(make_case([high(gauge)], DESIGN), SearchRules(most=1), DecisionRules(), lambda _what, _share: None)
+    assert result.denied == denied
+    assert bool(result.causes) is not gauge
 
 
 @pytest.mark.thorough

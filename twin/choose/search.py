@@ -76,7 +76,7 @@ class Searcher:
         """The whole search."""
         none = fit(self.channel, make_space(self.base, (), (), self.scales), [np.zeros(0)])
         space = make_space(self.base, (), self.channel.numbers, self.scales, ACCUSED_SPREAD)
-        retuned = fit(self.channel, space, starts_of(space), rounds=20)
+        retuned = fit(self.channel, space, starts_of(space, (), self.channel.recordings), rounds=20)
         self.origins[:] = [none, retuned]
         level = self._singles(retuned)
         slips = number_causes(self.channel)

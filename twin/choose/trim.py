@@ -105,7 +105,8 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
     equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
     percent: where a signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the
     stem so far that the position would not. It makes no answer either of a guess about a clear gap behind it. And a
-    pressure that passes for healthy and resembles something from outside of the vocabulary wanders a little.
+    pressure that passes for healthy and resembles something from outside of the vocabulary wanders a little, and so
+    does one that nobody measured, where the stem passes for healthy.
     """
     guesses = [_guess(d, weights) for d in decisions]
     slight = [_slight(d) and not _reaches(d, decisions) for d in decisions]
@@ -129,8 +130,11 @@ def _slight(decision: Decision) -> bool:
 
 
 def _wanders(decision: Decision) -> bool:
-    """Whether what a pressure does beside the command resembles something from outside of the vocabulary."""
-    return decision.findings.channel.name == "pressure" and rival_in(decision.accepted) is not None
+    """Whether what a pressure does beside the command resembles something from outside of the vocabulary.
+
+    Or what a stem does by it that nobody measured.
+    """
+    return decision.findings.channel.name != "position" and rival_in(decision.accepted) is not None
 
 
 def _reaches(decision: Decision, decisions: Sequence[Decision]) -> bool:

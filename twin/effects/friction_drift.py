@@ -3,9 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
+from math import exp
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_DRIFT_AMP, V_DRIFT_RATE, V_DRIFT_TAU_S, V_ON_STEM, V_STEP, V_STEP_TIME_S, V_WEAR
+from twin.slots import (
+    V_DRIFT_AMP,
+    V_DRIFT_RATE,
+    V_DRIFT_TAU_S,
+    V_ON_STEM,
+    V_STEP,
+    V_STEP_EASES,
+    V_STEP_EASES_S,
+    V_STEP_TIME_S,
+    V_WEAR,
+)
 
 _RATE = Parameter(
     name="rate",
@@ -59,6 +71,19 @@ _WHEN = Parameter(
 )
 
 
+_EASES = Parameter(
+    name="eases",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.5,),
+    scale=0.5,
+    doc="share of the change that is gone in the end",
+    size=False,
+)
+_EASING = replace(_SETTLING, starts=(100.0, 500.0), doc="time constant with which that share goes")
+
+
 #: Recordings up to which it goes on from one to the next.
 _MANY = 50
 
@@ -92,6 +117,17 @@ def _sudden(c: Coefficients, values: Sequence[float]) -> None:
         c.valve[V_STEP], c.valve[V_STEP_TIME_S] = values[0], when_s
 
 
+def _sudden_easing(c: Coefficients, values: Sequence[float]) -> None:
+    change, when, eases, easing_s = values
+    before_s, all_s = c.course_s
+    since_s = before_s - when * all_s
+    # a recording that begins after the change has the rest of it: what is left decays on
+    left = 1.0 if since_s <= 0.0 else exp(-since_s / easing_s)
+    stays = (1.0 - eases) + eases * left
+    c.valve[[V_STEP, V_STEP_TIME_S]] = change * stays, max(-since_s, 0.0)
+    c.valve[[V_STEP_EASES, V_STEP_EASES_S]] = (eases * left / stays if stays > 0.0 else 0.0), easing_s
+
+
 def _on_stem(c: Coefficients, grown: float) -> None:
     """What friction has grown by, and `grown` before this recording [pressure], holds the stem, not what pulls it."""
     c.valve[V_ON_STEM] = c.design.compliance
@@ -119,6 +155,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband changes with time.",
     equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step; "
+    "sudden_easing: a step of which a share goes again, as packing that is tightened relaxes; "
     "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own; "
     "on_stem: what it has grown by, s, does not widen the play but keeps the stem short: |w - x| less k s pulls it",
     source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
@@ -128,6 +165,7 @@ EFFECT = Effect(
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
+        Form("sudden_easing", (_CHANGE, _WHEN, _EASES, _EASING), _sudden_easing),
         Form("linear_on_stem", (_RATE,), _linear_on_stem),
         Form("warm_up_on_stem", (_CHANGE, _SETTLING), _warm_up_on_stem),
         Form("wear_on_stem", (_WEAR,), _wear_on_stem),

@@ -21,6 +21,9 @@ _FAR = {
     "tau": (-0.4, 0.4),
     "ep_tau": (-0.5, 0.5),
 }
+#: Shares of what the commands cover, by which a wider deadband is looked for, too: from one that is wider than that, in
+#: which the stem never moves, no way leads back.
+_OF_COMMANDS = (0.3, 0.7)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -119,7 +122,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), records: Sequence[Recordi
     Causes that one of the `known` fits has in the same form start where it ended (the first that has it counts), and
     the design numbers start as in the first of them. A form may read its starts from the `records`.
     """
-    heads = _number_starts(space, known[0].space.numbers if known else ())
+    heads = _number_starts(space, known[0].space.numbers if known else (), records)
     for cause in space.causes:
         if cause.form is None:
             continue
@@ -132,7 +135,7 @@ def starts_of(space: Space, known: Sequence[Fit] = (), records: Sequence[Recordi
     return heads
 
 
-def _number_starts(space: Space, given: Sequence[str]) -> list[FloatArray]:
+def _number_starts(space: Space, given: Sequence[str], records: Sequence[Recording]) -> list[FloatArray]:
     """Design numbers at their nominals; where nothing but they stand accused, they also start far off.
 
     A design that is wrong enough never moves, and then no small change of its numbers makes a difference. Those that
@@ -145,8 +148,15 @@ def _number_starts(space: Space, given: Sequence[str]) -> list[FloatArray]:
     for name, far in _FAR.items():
         if name in accused and name not in given:
             at = space.numbers.index(name)
-            heads = [_moved(head, at, z) for head in heads for z in (0.0, *far)]
+            near = _within_commands(space, at, max(far), records) if name == "deadband" else ()
+            heads = [_moved(head, at, z) for head in heads for z in (0.0, *near, *far)]
     return heads
+
+
+def _within_commands(space: Space, at: int, far: float, records: Sequence[Recording]) -> tuple[float, ...]:
+    """How much wider a deadband may be, in z of unknown `at`, that is well below `far` and shows in the records."""
+    covered = max((float(np.ptp(r.command)) for r in records), default=0.0) / abs(space.unknowns[at].unit)
+    return tuple(share * covered for share in _OF_COMMANDS if 0.02 < share * covered < 0.7 * far)
 
 
 def _moved(head: FloatArray, at: int, z: float) -> FloatArray:

@@ -59,6 +59,8 @@ from twin.slots import (
     V_SHORT,
     V_SQUARED_S,
     V_STEP,
+    V_STEP_EASES,
+    V_STEP_EASES_S,
     V_STEP_TIME_S,
     V_STIFFENS,
     V_STRETCHES,
@@ -224,7 +226,9 @@ def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatAr
     if c[V_DRIFT_AMP] != 0.0:
         widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
     if c[V_STEP] != 0.0:
-        widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
+        since = t - c[V_STEP_TIME_S]
+        gone = c[V_STEP_EASES] * -np.expm1(-np.maximum(since, 0.0) / c[V_STEP_EASES_S])
+        widening += np.where(since >= 0.0, c[V_STEP] * (1.0 - gone), 0.0)
     if c[V_STIFFENS] != 0.0:  # the same friction is less of a stiffer spring
         widening[t >= c[V_BREAKS_S]] += c[V_HALF] * (1.0 / (1.0 + c[V_STIFFENS]) - 1.0)
     return widening
