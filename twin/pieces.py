@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from logs.recording import DataNote, FloatArray, Recording
+from twin.stored_on_change import held_through_holes
 
 #: A hole is bridged when it is shorter than this, in periods and in seconds ...
 _PERIODS = 5.0
@@ -26,11 +27,17 @@ _REPEATED = 12
 def cut_at_holes(recordings: Sequence[Recording]) -> tuple[list[Recording], list[DataNote]]:
     """The recordings, each cut at its holes into recordings of their own; notes say where and what was left out.
 
-    A model that runs through a hole would be told a command that nobody recorded, and be wrong long after it.
+    A model that runs through a hole would be told a command that nobody recorded, and be wrong long after it. One that
+    was stored on change is not cut: its command is known.
     """
     pieces: list[Recording] = []
     notes: list[DataNote] = []
-    for recording in recordings:
+    for given in recordings:
+        recording, held = held_through_holes(given)
+        if held:
+            pieces.append(recording)
+            notes += held
+            continue
         own, lost, old = _cut(recording)
         if len(own) == 1 and not lost + old:
             pieces.append(recording)
