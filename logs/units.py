@@ -1,7 +1,8 @@
 """Units of foreign columns, turned into the house's own: psi, in, s, or percent where the file knows no more.
 
 A unit is a name that the units library knows (kPa, mbar, mm, ms, degF), `percent`, `fraction`, or a signal with its
-range: `percent(3..15 psi)`, `mA(4..20=3..15 psi)`, `V(0..5=0..0.5625 in)`.
+range: `percent(3..15 psi)`, `mA(4..20=3..15 psi)`, `V(0..5=0..0.5625 in)`. The house's pressure is a gauge's: from an
+absolute one (psia, bara, kPaa) the standard atmosphere is taken off.
 """
 
 from __future__ import annotations
@@ -23,7 +24,6 @@ _ATMOSPHERE_PSI = 14.696
 
 _ALIASES = {
     "psig": "psi",
-    "psia": "psi",
     "psi(g)": "psi",
     "barg": "bar",
     "bar(g)": "bar",
@@ -46,6 +46,16 @@ _ALIASES = {
     "frac": "fraction",
     "1": "fraction",
     "-": "",
+}
+_ABSOLUTE = {
+    "psia": "psi",
+    "psi(a)": "psi",
+    "bara": "bar",
+    "bar(a)": "bar",
+    "mbara": "mbar",
+    "kpaa": "kPa",
+    "kpa(a)": "kPa",
+    "mpaa": "MPa",
 }
 _NUMBER = r"[-+]?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?"
 _RANGE = re.compile(
@@ -75,6 +85,9 @@ def conversion(text: str, quantity: Quantity) -> Conversion:
     if ranged is not None:
         return _from_range(ranged, text, quantity)
     name = plain_name(text)
+    if name.lower() in _ABSOLUTE and quantity == "pressure":
+        scale, _ = _affine(_ABSOLUTE[name.lower()], house, quantity, text)
+        return Conversion(scale, -_ATMOSPHERE_PSI, house, f"converted from {text} to {house}{_taken_off(text)}")
     if name == house or not name:
         return Conversion(1.0, 0.0, house)
     if name in (PERCENT, "fraction") and quantity != "time":
@@ -124,9 +137,12 @@ def _from_range(found: re.Match[str], text: str, quantity: Quantity) -> Conversi
     inner = conversion(found["unit"], quantity)
     scale = (float(found["d"]) - float(found["c"])) / (high - low)
     shift = float(found["c"]) - scale * low
-    return Conversion(
-        inner.scale * scale, inner.scale * shift + inner.shift, inner.unit, f"converted from {text} to {inner.unit}"
-    )
+    said = f"converted from {text} to {inner.unit}{_taken_off(found['unit'])}"
+    return Conversion(inner.scale * scale, inner.scale * shift + inner.shift, inner.unit, said)
+
+
+def _taken_off(unit: str) -> str:
+    return f", {_ATMOSPHERE_PSI} psi of the atmosphere taken off" if unit.strip().lower() in _ABSOLUTE else ""
 
 
 def _affine(name: str, house: str, quantity: Quantity, text: str) -> tuple[float, float]:

@@ -49,6 +49,10 @@ def _factor(unit: str, wanted: str, quantity: Quantity, full: float, remedy: str
     if plain_name(unit) == plain_name(wanted):
         return 1.0
     given, needed = conversion(unit, quantity), conversion(wanted, quantity)
+    if given.shift != 0.0:
+        raise BadInput(
+            f"the model has its {quantity} in [{unit}], which is not 0 where [{given.unit}] is; write it in that"
+        )
     if PERCENT in (given.unit, needed.unit) and given.unit != needed.unit:
         ours = _OF_PERCENT if given.unit == PERCENT else _OF_A_FILE.format(quantity=quantity, unit=unit, full=full)
         raise BadInput(

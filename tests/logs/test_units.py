@@ -15,6 +15,10 @@ from logs.units import Quantity, conversion
         ("kPa", "pressure", 100.0, 14.503774, "psi"),
         ("bar", "pressure", 1.0, 14.503774, "psi"),
         ("psig", "pressure", 9.0, 9.0, "psi"),
+        ("psia", "pressure", 23.696, 9.0, "psi"),
+        ("kPaa", "pressure", 101.325, 0.0, "psi"),
+        ("bar(a)", "pressure", 2.01325, 14.503774, "psi"),
+        ("mA(4..20=0..2 bara)", "pressure", 12.0, 14.503774 - 14.696, "psi"),
         ("inH2O", "pressure", 100.0, 3.61273, "psi"),
         ("mm", "position", 25.4, 1.0, "in"),
         ("µm", "position", 25_400.0, 1.0, "in"),
@@ -33,7 +37,13 @@ def test_values_come_out_in_house_units(
     text: str, quantity: Quantity, value: float, expected: float, unit: str
 ) -> None:
     how = conversion(text, quantity)
-    assert how.scale * value + how.shift == pytest.approx(expected, rel=1e-4) and how.unit == unit
+    assert how.scale * value + how.shift == pytest.approx(expected, rel=1e-4, abs=1e-4) and how.unit == unit
+
+
+@pytest.mark.parametrize("unit", ["psia", "percent(3..15 psia)"])
+def test_it_is_said_that_the_atmosphere_is_taken_off_an_absolute_pressure(unit: str) -> None:
+    assert "14.696 psi of the atmosphere taken off" in conversion(unit, "pressure").said
+    assert "atmosphere" not in conversion(unit.replace("psia", "kPa"), "pressure").said
 
 
 @pytest.mark.parametrize(

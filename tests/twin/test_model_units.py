@@ -36,6 +36,11 @@ def test_percent_beside_another_unit_asks_for_the_range(model: str, record: str,
         in_units_of(DesignModel(position_unit=model), "psi", record)
 
 
+def test_a_model_in_absolute_pressure_is_refused() -> None:
+    with pytest.raises(BadInput, match=r"\[psia\], which is not 0 where \[psi\] is"):
+        in_units_of(DesignModel(pressure_unit="psia"), "psi", "in")
+
+
 def test_there_and_back() -> None:
     back = in_units_of(in_units_of(DesignModel(), "bar", "cm"), "psi", "in")
     assert back.a2 == pytest.approx(5.82)
