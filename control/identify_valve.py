@@ -20,6 +20,7 @@ from logs.recording import FloatArray
 
 NEVER = 1e9  # a travel or a rate limit that is never reached
 ROUGH_S = 0.2  # sampling that is good enough for a first guess
+FEWEST_KEPT = 30  # rows, however close together they are
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
 
 
@@ -98,10 +99,15 @@ class Freedom:
 
 
 def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
-    """The same record with rows and sub-steps as coarse as a first guess allows."""
+    """The same record with rows and sub-steps as coarse as a first guess allows.
+
+    Positions may be missing with a period of their own (polled at half the rate): of the rows that could be kept, those
+    are that hold the most of them.
+    """
     time_s = track.grid.time_s
     stride = max(1, int(least_period_s / max(float(np.median(np.diff(time_s))), 1e-6)))
-    keep = slice(None, None, stride)
+    stride = min(stride, max(1, time_s.size // FEWEST_KEPT))
+    keep = max((slice(first, None, stride) for first in range(stride)), key=lambda rows: int(track.good[rows].sum()))
     grid = make_grid(time_s[keep], 0.25 * least_period_s)
     pressure = np.interp(grid.fine_time_s, track.grid.fine_time_s, track.pressure)
     return Track(grid, pressure, track.position[keep], track.good[keep], track.start)

@@ -76,3 +76,18 @@ def test_thinning_keeps_the_signal() -> None:
     rough = thinned(plain)
     assert rough.position.size == plain.position.size // 2
     assert rough.position == pytest.approx(plain.position[::2])
+
+
+@pytest.mark.parametrize(("period", "phase"), [(2, 1), (2, 0), (4, 3), (10, 7)])
+def test_thinning_keeps_the_readings_of_a_position_that_is_polled_less_often(period: int, phase: int) -> None:
+    plain = track(Toy())
+    plain.good[:] = False
+    plain.good[phase::period] = True
+    rough = thinned(plain)
+    assert rough.good.sum() == TIME_S.size // period
+
+
+def test_thinning_leaves_rows_of_a_record_that_is_over_at_once() -> None:
+    plain = track(Toy())
+    grid = make_grid(1e-4 * TIME_S)
+    assert thinned(Track(grid, np.zeros(grid.n_fine), plain.position, plain.good, 0.0)).position.size >= 30
