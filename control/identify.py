@@ -12,17 +12,17 @@ import numpy as np
 
 from control.characterize import Settling, characterize
 from control.design import DesignModel
+from control.identify_checks import check_fit, check_found, check_motion, check_records
 from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
 from control.identify_pressure import PressureStage
-from control.identify_readings import fast_noise
 from control.identify_result import Estimate, Identified, misfit, quality_of
 from control.identify_slopes import slopes
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
 from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
 from control.identify_valve import Track, ValveFit, fit_valve
-from hal.errors import BadInput, JobFailed
+from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 
 
@@ -32,7 +32,7 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     Raises: `BadInput` when they are in different units, too short, the valve does not move, or the position falls with
     rising pressure; `JobFailed` when it follows the pressure in no way that the model knows.
     """
-    _check(recordings)
+    check_records(recordings)
     unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
     base = defaults or default_design(unit_p, unit_x)
     notes: list[str] = []
@@ -45,13 +45,14 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
         tracks += tracks_of(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
     if not tracks:
         raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
+    check_motion(tracks, recordings)
     fit, freedom = fit_valve(tracks)
     residual = fit.residual(tracks)
-    _check_fit(residual, tracks, recordings)
+    check_fit(residual, tracks, recordings)
     facts = Facts(base, unit_p, unit_x, _ep_tau(stages), fit, freedom, tracks)
     spread, freedom_rows = spread_of(tracks, fit, freedom)
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
-    _check_found(estimates, recordings)
+    check_found(estimates, tracks, recordings)
     estimates += slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design, notes)
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
@@ -83,34 +84,6 @@ def default_design(pressure_unit: str, position_unit: str) -> DesignModel:
     )
 
 
-def _check(recordings: Sequence[Recording]) -> None:
-    if not recordings:
-        raise BadInput("no recording to identify from; name at least one run or file")
-    first = recordings[0]
-    for each in recordings:
-        if each.meta.get("positioner"):
-            raise BadInput(
-                f"{each.name}: its commands are positions for a positioner, whose pressure is its own affair: "
-                "a1, a2 and the lags of the valve do not show; identify from a record whose commands are pressures"
-            )
-        if (each.pressure_unit, each.position_unit) != (first.pressure_unit, first.position_unit):
-            raise BadInput(
-                f"{each.name} has [{each.pressure_unit}, {each.position_unit}], {first.name} "
-                f"[{first.pressure_unit}, {first.position_unit}]; bring them to the same units with --units"
-            )
-        if each.n < FEWEST_ROWS:
-            raise BadInput(f"{each.name}: {each.n} rows are too few to identify anything; at least {FEWEST_ROWS}")
-    if max(float(np.ptp(each.command)) for each in recordings) <= 0.0:
-        raise BadInput(
-            f"{first.name}: the command never changes; record a sweep, for example `lostmotion sweep staircase`"
-        )
-    moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
-    if moved <= 8.0 * max(fast_noise(each.position) for each in recordings):
-        raise BadInput(
-            f"{first.name}: the position never leaves its noise; identifying takes a record that moves over both curves"
-        )
-
-
 def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
     """The E/P lag over all recordings, weighted by what each knows of it."""
     known = [stage.tau_s for stage in stages if stage.tau_s is not None]
@@ -120,32 +93,6 @@ def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
     value = float(weights @ [each.value for each in known] / weights.sum())
     reach = float(weights.sum() ** -0.5)
     return Interval(value, value - reach, value + reach)
-
-
-def _check_fit(residual: FloatArray, tracks: Sequence[Track], recordings: Sequence[Recording]) -> None:
-    position = np.concatenate([t.position[t.good] for t in tracks])
-    if float(np.std(residual)) < 0.6 * float(np.std(position)):
-        return
-    pressure = np.concatenate([t.pressure[t.grid.first][t.good] for t in tracks])
-    names = ", ".join(recording.name for recording in recordings)
-    cause = "command" if all(recording.pressure is None for recording in recordings) else "pressure"
-    if float(np.corrcoef(pressure, position)[0, 1]) < -0.3:
-        raise BadInput(
-            f"{names}: the position falls as the {cause} rises; 0 must be the open end, so turn the position round"
-        )
-    raise JobFailed(
-        f"{names}: the position does not follow the {cause} in any way that the model knows; check the columns"
-    )
-
-
-def _check_found(estimates: Sequence[Estimate], recordings: Sequence[Recording]) -> None:
-    known = {each.name for each in estimates if each.interval is not None}
-    if "compliance" not in known and not {"a1", "a2"} <= known:
-        names = ", ".join(recording.name for recording in recordings)
-        raise JobFailed(
-            f"{names}: the curves do not show: the record moves too little to tell where the stem starts to close, "
-            "where it is open again and how stiff it is between; sweep through both, as with `lostmotion sweep ramp`"
-        )
 
 
 def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[str]) -> list[Estimate]:

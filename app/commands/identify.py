@@ -37,6 +37,7 @@ def command(
     from app.recordings import load_all
     from control.design import save_design
     from control.identify import identify
+    from control.identify_checks import check_commands
     from hal.errors import BadInput
 
     if out.suffix != ".toml":
@@ -48,6 +49,7 @@ def command(
         check_target(plot, runs)
     recordings = load_all(runs, mapping, units, command_timing)
     found = identify(recordings)
+    check_commands(found.design, recordings)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
         save_design(found.design, out, comment=_comment(found))

@@ -106,3 +106,17 @@ def test_a_positioners_record_is_refused(tmp_path: Path, capsys: pytest.CaptureF
     assert run(["identify", record, "--out", str(tmp_path / "m.toml")]) == 2
     assert "positions for a positioner" in capsys.readouterr().err
     assert not (tmp_path / "m.toml").exists()
+
+
+def test_a_strangers_record_of_a_positioner_is_refused_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """The file does not say that its commands are positions; that the stem goes where it is told does."""
+    levels = np.random.default_rng(1).uniform(20.0, 80.0, 30)
+    command = np.repeat(levels, 40)
+    position = command.copy()
+    for row in range(1, command.size):
+        position[row] = command[row] + (position[row - 1] - command[row]) * np.exp(-0.25)
+    table = np.column_stack((np.arange(command.size), command, np.round(position, 1)))
+    np.savetxt(tmp_path / "x.csv", table, delimiter=",", header="time_s,command_%,position_%", comments="")
+    assert run(["identify", str(tmp_path / "x.csv"), "--out", str(tmp_path / "m.toml")]) == 2
+    assert "so the commands are positions for a positioner" in capsys.readouterr().err
+    assert not (tmp_path / "m.toml").exists()

@@ -160,6 +160,26 @@ def test_what_cannot_be_identified_is_refused_in_words() -> None:
         identify([])
 
 
+def test_a_short_record_that_is_the_wrong_way_round_is_told_so() -> None:
+    levels = np.concatenate([np.linspace(3.0, 15.0, 10), np.linspace(15.0, 3.0, 10)[1:]])
+    short = record(Toy(), np.arange(1500) * 0.1, np.repeat(levels, 120)[:1500])
+    with pytest.raises(BadInput, match="position falls as the pressure rises"):
+        identify([replace(short, position=0.5625 - short.position)])
+
+
+def test_times_in_another_unit_are_refused_and_not_divided_by_zero() -> None:
+    plain = sweep(0.5)
+    with pytest.raises(BadInput, match=r"0.299 s are too short to identify a valve; at least 2 s.*--units time=UNIT"):
+        identify([replace(plain, time_s=1e-3 * plain.time_s)])
+
+
+def test_positions_at_every_other_row_are_enough() -> None:
+    plain = sweep()
+    position = plain.position.copy()
+    position[::2] = np.nan
+    check(identify([replace(plain, position=position)]))
+
+
 def test_one_stroke_says_nothing_of_a_play() -> None:
     # One step up shows one curve; that no play was seen is no proof that there is none.
     time_s = np.arange(0.0, 12.0, 0.1)
