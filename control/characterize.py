@@ -14,6 +14,7 @@ import numpy as np
 
 from control.identify_interval import Interval
 from control.identify_readings import fast_noise
+from control.robust_line import robust_line
 from logs.recording import FloatArray, Recording
 
 LEAST_DWELL_S = 2.0
@@ -159,40 +160,24 @@ def characterize(recordings: list[Recording], settling: Settling | None = None) 
 def fit_curve(pressure: FloatArray, position: FloatArray) -> Curve | None:
     """A straight line through the points of a branch that outliers cannot pull; None when they lie at one pressure.
 
-    Bisquare weights from a Theil-Sen start; intervals from the scatter, with Student's t; that of the onset by
-    Fieller's theorem to first order. Source: Maronna, Martin and Yohai, "Robust Statistics", Wiley 2006, chapter 5.
+    Intervals from the scatter, with Student's t; that of the onset, a ratio, by the delta method.
     """
     from scipy.stats import t as student
-    from scipy.stats import theilslopes
 
     if np.ptp(pressure) < 1e-9:
         return None
-    slope, start, _, _ = theilslopes(position, pressure)
-    design = np.column_stack((np.ones_like(pressure), pressure))
-    found = np.array([start, slope])
-    weight = np.ones_like(pressure)
-    for _ in range(20):
-        rest = position - design @ found
-        scale = 1.4826 * float(np.median(np.abs(rest))) + 1e-12 + 1e-6 * float(np.ptp(position))
-        weight = np.clip(1.0 - (rest / (4.685 * scale)) ** 2, 0.0, None) ** 2
-        normal = design.T @ (design * weight[:, None])
-        found = np.linalg.solve(normal, design.T @ (weight * position))
-    rest = position - design @ found
-    freedom = max(1.0, float(weight.sum()) - 2.0)
-    variance = float(np.sum(weight * rest**2)) / freedom
-    spread = np.linalg.inv(normal) * variance
-    reach = float(student.ppf(0.975, freedom))
-    intercept, compliance = float(found[0]), float(found[1])
-    if compliance <= 0.0:
+    line = robust_line(pressure, position)
+    if line.slope <= 0.0:
         return None
-    onset = -intercept / compliance
-    gradient = np.array([-1.0 / compliance, intercept / compliance**2])
-    onset_reach = reach * float(np.sqrt(gradient @ spread @ gradient))
-    slope_reach = reach * float(np.sqrt(spread[1, 1]))
+    onset = -line.start / line.slope
+    gradient = np.array([-1.0 / line.slope, line.start / line.slope**2])
+    reach = float(student.ppf(0.975, line.freedom))
+    onset_reach = reach * float(np.sqrt(gradient @ line.spread @ gradient))
+    slope_reach = reach * float(np.sqrt(line.spread[1, 1]))
     return Curve(
         Interval(onset, onset - onset_reach, onset + onset_reach),
-        Interval(compliance, compliance - slope_reach, compliance + slope_reach),
+        Interval(line.slope, line.slope - slope_reach, line.slope + slope_reach),
         pressure,
         position,
-        weight > 0.0,
+        line.used,
     )

@@ -20,7 +20,8 @@ WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 BLIND_S = 0.5  # readings closer than this share their noise and do not count as unseen
 TAU_RANGE_S = (0.005, 60.0)
 GAIN_TOLERANCE = 0.005
-DOUBTS = 8
+DOUBTS = 24
+PIECES = 8.0  # the noise is dealt anew in pieces of this part of the average's width
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,10 +75,24 @@ def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_
 
 
 def _doubts(time_s: FloatArray, noise: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:
-    """The readings' own noise, turned to begin elsewhere and smoothed like the readings: it keeps its colour."""
-    shifts = np.linspace(0.1, 0.9, DOUBTS // 2) * noise.size
-    turned = [moving_average(time_s, np.roll(noise, int(shift)), good, width_s) for shift in shifts]
-    return np.array([sign * each for each in turned for sign in (1.0, -1.0)])
+    """The readings' own noise, in pieces of random order and sign, smoothed like the readings.
+
+    `noise` has lost its own moving average. Smoothed again as it is, it would keep a sixth of the variance that the
+    average of noise has: sum (H - H H)^2 for a box H of N rows is 1/(6 N), not 1/N. Pieces much shorter than the box
+    lose hardly anything, and keep the colour of a noise that is shorter than they are.
+    """
+    known = noise[good]
+    period_s = max(float(np.median(np.diff(time_s))), 1e-9)
+    rows = int(np.clip(width_s / PIECES / period_s, 1, max(1, known.size // 4)))
+    pieces = np.array_split(known, max(1, known.size // rows))
+    chance = np.random.default_rng(0)  # the same record has the same intervals
+    found = []
+    for _ in range(DOUBTS):
+        dealt = np.zeros(noise.size)
+        signs = chance.choice((1.0, -1.0), len(pieces))
+        dealt[good] = np.concatenate([signs[i] * pieces[i] for i in chance.permutation(len(pieces))])
+        found.append(moving_average(time_s, dealt, good, width_s))
+    return np.array(found)
 
 
 @dataclass(frozen=True, slots=True)

@@ -54,6 +54,23 @@ def test_the_smoothed_pressure_is_closer_to_the_truth_than_the_readings() -> Non
     assert np.abs(stage.fine - truth).max() < 0.005
 
 
+@pytest.mark.parametrize("missing", [1, 3])
+@pytest.mark.parametrize("memory_rows", [1, 5])
+def test_the_doubts_are_as_large_as_what_the_smoothing_leaves_of_the_noise(missing: int, memory_rows: int) -> None:
+    true, doubted = [], []
+    box = np.ones(memory_rows) / memory_rows**0.5
+    for seed in range(12):
+        noise = 0.004 * np.convolve(np.random.default_rng(seed).standard_normal(TIME_S.size), box, "same")
+        pressure = readings(0.3, noise=0.0) + noise
+        if missing > 1:
+            pressure[::missing] = np.nan
+        stage = fit_pressure(GRID, COMMAND, pressure, 0.3)
+        good = np.isfinite(pressure)
+        true.append(np.var(moving_average(TIME_S, np.where(good, noise, 0.0), good, stage.width_s)))
+        doubted.append(np.var(stage.doubts))
+    assert np.mean(doubted) == pytest.approx(np.mean(true), rel=0.3)
+
+
 def test_a_slow_disturbance_that_is_really_there_is_kept() -> None:
     wave = 0.1 * np.sin(TIME_S / 15.0)
     stage = fit_pressure(GRID, COMMAND, readings(0.3) + wave, 0.3)
