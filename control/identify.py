@@ -7,6 +7,7 @@ for comparison, the two curves from steady dwells and the time constant by the 6
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,19 +38,15 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     base = defaults or default_design(unit_p, unit_x)
     notes: list[str] = []
     recordings = [cleaned(each, notes) for each in recordings]
-    tracks, stages = list[Track](), list[PressureStage]()
-    for recording in recordings:
-        stage, fine_s, fine = drive_of(recording, base.ep_tau_s, notes)
-        if stage is not None:
-            stages.append(stage)
-        tracks += tracks_of(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
+    given = _prepared(recordings, base.ep_tau_s, notes)
+    tracks = given.tracks
     if not tracks:
         raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
     check_motion(tracks, recordings)
     fit, freedom = fit_valve(tracks)
     residual = fit.residual(tracks)
     check_fit(residual, tracks, recordings)
-    facts = Facts(base, unit_p, unit_x, _ep_tau(stages), fit, freedom, tracks)
+    facts = Facts(base, unit_p, unit_x, _ep_tau(given.stages), fit, freedom, tracks)
     spread, freedom_rows = spread_of(tracks, fit, freedom)
     design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
     check_found(estimates, tracks, recordings)
@@ -57,6 +54,9 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     estimates += _other_ways(list(recordings), design, notes)
     _say_zero(residual, tracks, fit, design, notes)
     quality = quality_of(residual, np.concatenate([t.position[t.good] for t in tracks]), design.travel)
+    if given.commanded:
+        missed = float(np.sqrt(np.mean(fit.residual(given.commanded) ** 2)))
+        quality = replace(quality, commanded_percent_of_travel=100.0 * missed / design.travel)
     notes += misfit(quality, [recording.position for recording in recordings])
     return Identified(
         design,
@@ -67,6 +67,26 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
         tuple(dict.fromkeys(notes)),
         tuple(fit.predict(tracks)),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class _Prepared:
+    """The records' tracks; the same driven by the command alone, none where a pressure is missing; the E/P stages."""
+
+    tracks: list[Track]
+    commanded: list[Track]
+    stages: list[PressureStage]
+
+
+def _prepared(recordings: Sequence[Recording], ep_tau_s: float, notes: list[str]) -> _Prepared:
+    tracks, commanded, stages = list[Track](), list[Track](), list[PressureStage]()
+    for recording in recordings:
+        stage, fine_s, fine = drive_of(recording, ep_tau_s, notes)
+        if stage is not None:
+            stages.append(stage)
+            commanded += tracks_of(recording, fine_s, stage.commanded, (), [])
+        tracks += tracks_of(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
+    return _Prepared(tracks, commanded if len(stages) == len(recordings) else [], stages)
 
 
 def default_design(pressure_unit: str, position_unit: str) -> DesignModel:

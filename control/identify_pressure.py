@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.identify_interval import Interval, intervals
+from control.identify_interval import Interval, covariance, intervals
 from control.identify_model import Grid, lagged
 from control.identify_readings import fast_noise
 from logs.recording import FloatArray
@@ -19,14 +19,19 @@ from logs.recording import FloatArray
 WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 BLIND_S = 0.5  # readings closer than this share their noise and do not count as unseen
 TAU_RANGE_S = (0.005, 60.0)
-GAIN_TOLERANCE = 0.005
+TOLERANCE = 0.005  # of the span, by which a pressure may differ from its command; gauges of a bench are no better
+SURE_SIGMAS = 4.0  # ... and of the standard error of that difference
 DOUBTS = 24
 PIECES = 8.0  # the noise is dealt anew in pieces of this part of the average's width
 
 
 @dataclass(frozen=True, slots=True)
 class PressureStage:
-    """pressure = gain * lag(command) + zero. `tau_s` is None where the record does not tell."""
+    """pressure = gain * lag(command) + zero. `tau_s` is None where the record does not tell.
+
+    `off` is the largest difference between a command of the record and the pressure that it settles at, `off_sigma` its
+    standard error, `span` the range of the commands, or half the highest of them where that is more.
+    """
 
     tau_s: Interval | None
     gain: float
@@ -35,11 +40,15 @@ class PressureStage:
     width_s: float
     doubts: FloatArray  # what the smoothed pressure may be off by, shape (DOUBTS, n): noise like that of the readings
     fine: FloatArray  # the pressure that drives the play, on the fine grid
+    commanded: FloatArray  # the pressure that the design model makes of the command alone, on the fine grid
+    off: float
+    off_sigma: float
+    span: float
 
     @property
     def is_calibrated(self) -> bool:
-        """Whether the transmitter agrees with the command within half a percent of its span of 20 psi or so."""
-        return abs(self.gain - 1.0) < 4.0 * GAIN_TOLERANCE
+        """Whether the transmitter agrees with the commands, of which the design model knows nothing else."""
+        return self.off <= max(TOLERANCE * self.span, SURE_SIGMAS * self.off_sigma)
 
 
 def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_tau_s: float) -> PressureStage:
@@ -71,7 +80,25 @@ def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_
     fine = shape.fine(grid, command) + np.interp(np.arange(grid.n_fine), grid.first, correction)
     rms = float(np.sqrt(np.mean(rest[good] ** 2)))
     doubts = _doubts(grid.time_s, np.where(good, rest - correction, 0.0), good, width_s)
-    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, doubts, fine)
+    commanded = lagged(grid, command, shape.tau_s, float(command[0]))
+    off, off_sigma = _off(commanded[grid.first][good], command, shape, rest[good])
+    span = float(max(np.ptp(command), 0.5 * np.max(np.abs(command))))
+    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, doubts, fine, commanded, off, off_sigma, span)
+
+
+def _off(response: FloatArray, command: FloatArray, shape: _Shape, rest: FloatArray) -> tuple[float, float]:
+    """How far the settled pressure is from the command, at the end of the commands where it is further; its sigma."""
+    if np.ptp(response) < 1e-9:
+        return 0.0, 0.0
+    middle = float(np.mean(response))
+    limit = 3.0 * 1.4826 * float(np.median(np.abs(rest))) + 1e-12
+    jacobian = np.column_stack((response - middle, np.ones_like(response)))
+    spread, _ = covariance(jacobian, np.clip(rest, -limit, limit))
+    ends = np.array([np.min(command), np.max(command)])
+    off = np.abs(shape.gain * ends + shape.zero - ends)
+    end = int(np.argmax(off))
+    at = np.array([ends[end] - middle, 1.0])
+    return float(off[end]), float(np.sqrt(at @ spread @ at))
 
 
 def _doubts(time_s: FloatArray, noise: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:

@@ -39,11 +39,16 @@ class Estimate:
 @dataclass(frozen=True, slots=True)
 class Quality:
     """How well the model fits: RMS of the residual, in the position's unit and in percent of travel, and the share
-    of the position's variation that is explained, 100 (1 - |y - x| / |y - mean y|) [percent]."""
+    of the position's variation that is explained, 100 (1 - |y - x| / |y - mean y|) [percent].
+
+    `commanded_percent_of_travel` is the RMS where the model makes the pressure of the command, as it does in use, and
+    not of the gauge; None where no pressure was measured.
+    """
 
     rms: float
     rms_percent_of_travel: float
     fit_percent: float
+    commanded_percent_of_travel: float | None = None
 
 
 @dataclass(frozen=True)

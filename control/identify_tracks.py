@@ -54,8 +54,9 @@ def drive_of(
         notes.append(f"{recording.name}: the pressure does not show the E/P lag; it is kept at {ep_tau_s:g} s")
     if not stage.is_calibrated:
         notes.append(
-            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}: "
-            f"{unit_doubt(stage.gain)}the design model has no place for that"
+            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}, up to {stage.off:.2g} "
+            f"{recording.pressure_unit} off: {unit_doubt(stage.gain)}the design model has no place for that; "
+            "a1 and a2 are what the gauge reads, not what is commanded"
         )
     return stage, grid.fine_time_s, stage.fine
 

@@ -101,8 +101,7 @@ class Freedom:
 def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
     """The same record with rows and sub-steps as coarse as a first guess allows.
 
-    Positions may be missing with a period of their own (polled at half the rate): of the rows that could be kept, those
-    are that hold the most of them.
+    Positions may be missing with a period of their own: of the rows that could be kept those are that have the most.
     """
     time_s = track.grid.time_s
     stride = max(1, int(least_period_s / max(float(np.median(np.diff(time_s))), 1e-6)))
@@ -192,11 +191,10 @@ def _variance(rest: FloatArray) -> float:
 
 
 def _bounds(tracks: Sequence[Track], freedom: Freedom) -> tuple[FloatArray, FloatArray]:
-    (p_low, p_high), reach = _reach(tracks)[0], _reach(tracks)[1]
+    (p_low, p_high), reach = _reach(tracks)
     span = p_high - p_low
-    slope = reach / span
+    slope, top = reach / span, _top(tracks)
     slopes = 2 if freedom.separate else 1
-    top = _top(tracks)
     low = [p_low - span, p_low - span, *[0.05 * slope] * slopes, 1e-3]
     high = [p_high + span, p_high + span, *[200.0 * slope] * slopes, 300.0]
     low += [1e-4 * reach] * freedom.rate + [0.5 * top] * freedom.travel + [-2.0 * reach] * len(tracks)
@@ -227,15 +225,14 @@ def _top(tracks: Sequence[Track]) -> float:
 
 def top_speed(tracks: Sequence[Track], fit: ValveFit) -> float:
     """The highest speed of the stem in the fit."""
-    speeds = [np.abs(np.diff(x)) / np.diff(t.grid.time_s) for t, x in zip(tracks, fit.predict(tracks), strict=True)]
-    return max(1e-9, *(float(np.max(s, initial=0.0)) for s in speeds))
+    pairs = zip(tracks, fit.predict(tracks), strict=True)
+    return max(1e-9, *(float(np.max(np.abs(np.diff(x)) / np.diff(t.grid.time_s), initial=0.0)) for t, x in pairs))
 
 
 def _coarse(tracks: Sequence[Track]) -> list[FloatArray]:
     """The three best of a few hundred rough guesses that suit any units, and the best without a stop."""
     (p_low, p_high), width = _reach(tracks)
-    span = p_high - p_low
-    top = _top(tracks)
+    span, top = p_high - p_low, _top(tracks)
     ranked = []
     for band, slope, place, tau in product(
         (0.0, 0.1, 0.2, 0.33, 0.5), (1.0, 1.5, 2.5), (0.1, 0.3, 0.5, 0.7), (0.5, 3.0, 12.0)
@@ -248,7 +245,6 @@ def _coarse(tracks: Sequence[Track]) -> list[FloatArray]:
         rest = np.abs(fit.residual(tracks))
         ranked.append((float(np.mean(np.minimum(rest, 0.3 * width) ** 2)), numbers))
     ranked.sort(key=lambda pair: pair[0])
-    chosen = [numbers for _, numbers in ranked[:3]]
     open_ended = ranked[0][1].copy()
     open_ended[TRAVEL] = NEVER
-    return [*chosen, open_ended]
+    return [*(numbers for _, numbers in ranked[:3]), open_ended]

@@ -42,7 +42,7 @@ def robust_line(x: FloatArray, y: FloatArray) -> Line:
         used = np.ones(x.size, dtype=bool)
     else:
         found, variance, used = _bisquare(design, y)
-    spread = np.linalg.inv(design.T @ design) * variance
+    spread = np.asarray(np.linalg.inv(design.T @ design) * variance, dtype=np.float64)
     return Line(float(found[0]), float(found[1]), spread, freedom, used)
 
 

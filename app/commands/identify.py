@@ -105,6 +105,9 @@ def _print(found: Identified, recordings: list[Recording], out: Path) -> None:
         f"model against record: RMS {quality.rms:.4g} {unit} = {quality.rms_percent_of_travel:.3f} % of travel, "
         f"fit {quality.fit_percent:.1f} % over {found.rows} rows"
     )
+    if quality.commanded_percent_of_travel is not None:
+        missed = f"RMS {quality.commanded_percent_of_travel:.3f} % of travel"
+        click.echo(f"from the command alone, as the model file is used: {missed}")
     for note in found.notes:
         click.echo(f"note: {note}")
     for recording in recordings:

@@ -173,6 +173,18 @@ def test_times_in_another_unit_are_refused_and_not_divided_by_zero() -> None:
         identify([replace(plain, time_s=1e-3 * plain.time_s)])
 
 
+def test_it_is_said_how_far_the_command_alone_goes_astray() -> None:
+    plain = sweep()
+    assert plain.pressure is not None
+    right = identify([plain]).quality.commanded_percent_of_travel
+    assert right == pytest.approx(0.107, abs=0.02)
+    off = identify([replace(plain, pressure=plain.pressure + 0.5)])
+    assert off.quality.rms_percent_of_travel == pytest.approx(0.107, abs=0.02)
+    assert off.quality.commanded_percent_of_travel is not None
+    assert off.quality.commanded_percent_of_travel > 5.0
+    assert identify([without_pressure(plain)]).quality.commanded_percent_of_travel is None
+
+
 def test_positions_at_every_other_row_are_enough() -> None:
     plain = sweep()
     position = plain.position.copy()

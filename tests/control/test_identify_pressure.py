@@ -116,6 +116,26 @@ def test_the_note_of_a_record_says_it() -> None:
     assert "psi per kPa" in notes[0]
 
 
+@pytest.mark.parametrize(("gain", "zero"), [(1.0, 0.1), (1.01, 0.0), (0.99, 0.0), (1.02, -0.18)])
+def test_a_zero_or_a_gain_that_is_a_little_off_is_said(gain: float, zero: float) -> None:
+    """Of the last the middle of the commands agrees; both their ends do not."""
+    run = record(Toy(), TIME_S, COMMAND)
+    assert run.pressure is not None
+    notes: list[str] = []
+    stage, _, _ = drive_of(replace(run, pressure=gain * run.pressure + zero), 0.3, notes)
+    assert stage is not None
+    assert stage.off == pytest.approx(max(abs((gain - 1.0) * end + zero) for end in (4.0, 13.0)), abs=0.01)
+    assert f"{gain:.4f} x command"[:5] in notes[0]
+    assert "psi off" in notes[0]
+
+
+def test_a_pressure_that_agrees_within_its_noise_is_not_said_to_be_off() -> None:
+    for seed in range(5):
+        notes: list[str] = []
+        drive_of(record(Toy(), TIME_S[:300], COMMAND[:300], seed=seed, noise_p=0.2), 0.3, notes)
+        assert not any("psi off" in note for note in notes)
+
+
 @pytest.mark.parametrize("gain", [0.95, 1.05, 0.1433, 7.0, -6.895, 0.0])
 def test_any_other_gain_is_the_transducers(gain: float) -> None:
     assert "disagree" in unit_doubt(gain)
