@@ -50,7 +50,7 @@ class DesignModel:
 def check_for_control(design: DesignModel) -> None:
     """Whether controllers and frequency analysis can work with these numbers.
 
-    Raises: `BadInput` for a design that is not in psi and inches, or one without a deadband.
+    Raises: `BadInput` for a design that is not in psi and inches, or one without a deadband or a lag.
     """
     if (design.pressure_unit, design.position_unit) != ("psi", "in"):
         raise BadInput(
@@ -61,6 +61,11 @@ def check_for_control(design: DesignModel) -> None:
         raise BadInput(
             f"this design has no deadband (a1 = {design.a1:g}, a2 = {design.a2:g} psi), so there is no lost motion to "
             "tune for or to hunt with; identify the model from a sweep that turns round"
+        )
+    if design.tau_s <= 0.0:
+        raise BadInput(
+            "this design's stem has no lag (valve.tau = 0), which no stem is without and which controllers divide by; "
+            "identify the model, or say a small one, such as 0.05 s"
         )
 
 

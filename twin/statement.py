@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from twin.catalog import effects
-from twin.diagnosis import Cause, Diagnosis, Estimate
+from twin.diagnosis import Cause, Diagnosis, Estimate, Gap
 
 #: Up to so many times the noise an error is "as well as the noise allows".
 _LIKE = 1.3
@@ -50,10 +50,14 @@ def statement(diagnosis: Diagnosis) -> str:
             f"{g.before:.2g} % of travel without and {g.after:.2g} % with that (noise {g.noise_floor:.2g} %)."
         )
     them = "it" if len(diagnosis.causes) == 1 else "them"
-    return (
-        f"{what}: {names}. With {them} the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of "
-        f"travel (noise {g.noise_floor:.2g} %){share}."
-    )
+    return f"{what}: {names}. {_error(g, them)} (noise {g.noise_floor:.2g} %){share}."
+
+
+def _error(g: Gap, them: str) -> str:
+    """The error with what was named beside that without; what the readings show by themselves may make it no less."""
+    if g.after >= g.before:
+        return f"The error on held-out data is {g.after:.2g} % of travel with {them} and {g.before:.2g} % without"
+    return f"With {them} the error on held-out data falls from {g.before:.2g} % to {g.after:.2g} % of travel"
 
 
 def signed(diagnosis: Diagnosis, signature: Mapping[str, object]) -> Diagnosis:

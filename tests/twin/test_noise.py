@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from logs.recording import Recording
 from tests.twin.toy_valve import Toy, record, staircase
+from twin.noise.fast import fast_memory
 from twin.noise.model import estimate_noise, poisson_tail
 from twin.noise.repeats import _longest, find_repeats
 from twin.noise.robust import autocorrelation, autoregression, correlation_samples, robust_sigma
-from twin.noise.still import even_windows, fast_memory, given_back, still_pieces
+from twin.noise.still import even_windows, given_back, still_pieces
 
 DT = 0.1
 SIGMA = 8e-4

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from twin.diagnosis import Cause, Diagnosis, Estimate, Gap
@@ -42,3 +44,11 @@ def test_a_cause_that_was_seen_in_the_readings_keeps_its_numbers() -> None:
 @pytest.mark.parametrize(("count", "word"), [(1, "With it the error"), (2, "With them the error")])
 def test_one_cause_is_it_and_more_are_them(count: int, word: str) -> None:
     assert word in said(*[one("creep", "one_tail", share=0.2), one("stiction", "one_jump", breakaway=0.3)][:count])
+
+
+def test_an_error_does_not_fall_to_more() -> None:
+    """A display's step is named by its readings alone; the error that is left may be no smaller for it."""
+    named = one("sensor_quantization", "", step=0.04)
+    more = Diagnosis("effect", "", (named,), (), replace(GAP, before=0.93, after=1.1))
+    assert "falls" in said(named)
+    assert "falls" not in statement(more) and "1.1 % of travel with it and 0.93 % without" in statement(more)

@@ -11,7 +11,7 @@ import numpy as np
 from hal.sample import Quality
 from twin.live.alarm import AlarmRules, Cusum, CusumState, design_cusum
 from twin.live.twin import LiveTwin
-from twin.noise.still import fast_memory
+from twin.noise.fast import fast_memory
 from twin.plant import Plant
 
 _UNUSABLE = Quality.MISSING | Quality.SENTINEL | Quality.IMPLAUSIBLE

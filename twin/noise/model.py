@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from logs.recording import FloatArray, Recording
+from twin.noise.fast import fast_memory
 from twin.noise.lattice import lattice_step
 from twin.noise.repeats import RepeatPair, find_repeats
 from twin.noise.robust import (
@@ -21,13 +22,14 @@ from twin.noise.robust import (
     robust_sigma,
     whiten,
 )
-from twin.noise.still import even_windows, fast_memory, given_back, held_windows, still_pieces, straight_windows
+from twin.noise.still import even_windows, given_back, held_windows, still_pieces, straight_windows
 
 Source = Literal["repeats", "still", "straight", "high_frequency", "none"]
 
 _TAIL = 4.5  # sigmas; a Gaussian reading passes it once in 150,000
 LOUD = 4.0  # times the resting noise: a difference of repeats beyond it has a cause
 _LEAST = 200  # samples before a source is trusted
+_COMPLETE = 0.9  # of the rows: with fewer readings the memory is of first order
 
 
 @dataclass(frozen=True, slots=True)
@@ -168,7 +170,9 @@ def _measured(
         spread *= grown
     sigma = max(spread, least)
     tau = correlation_samples(rho)
-    ar, variance = autoregression(rho, rows)
+    # each lag of a reading with holes is of other pairs: over many of them that is no autocorrelation, over one it is
+    complete = rows > _COMPLETE * sum(piece.size for piece in pieces)
+    ar, variance = autoregression(rho if complete else rho[:2], rows)
     return SignalNoise(sigma, tau, source, rows, period_s, ar, sigma * sqrt(variance), tail_p, ratio, by_source)
 
 

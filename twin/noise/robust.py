@@ -10,12 +10,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from logs.recording import FloatArray
 
 CLIP = 5.0  # a Gaussian value passes this many sigma once in two million: what is beyond is no noise
 MAX_LAG = 200
 _MAX_ORDER = 25
+_MET = 0.02  # of the pairs of readings that a lag would have, were none missing: fewer say nothing of it
+_NONE = 1e-12  # a correlation that is none, to take a logarithm of
 
 
 def robust_sigma(values: FloatArray) -> float:
@@ -47,11 +50,14 @@ def clipped(values: FloatArray, sigma: float) -> FloatArray:
 
 
 def autocorrelation(pieces: Sequence[FloatArray], max_lag: int = MAX_LAG) -> FloatArray:
-    """Autocorrelation pooled over the pieces, lags 0..m with m <= `max_lag` and m < a third of the longest piece."""
+    """Autocorrelation pooled over the pieces, lags 0..m with m <= `max_lag` and m < a third of the longest piece.
+
+    Lags at which hardly any two readings lie, as of every other row, are filled in from those beside them.
+    """
     longest = max((piece.size for piece in pieces), default=0)
     lags = min(max_lag, longest // 3)
     total = np.zeros(lags + 1)
-    pairs = np.zeros(lags + 1)
+    pairs, possible = np.zeros(lags + 1), np.zeros(lags + 1)
     for piece in pieces:
         known = np.isfinite(piece)
         filled = np.where(known, piece, 0.0)
@@ -61,10 +67,20 @@ def autocorrelation(pieces: Sequence[FloatArray], max_lag: int = MAX_LAG) -> Flo
             # einsum stays on this thread: for short pieces a pool costs more than it saves
             total[lag] += float(np.einsum("i,i->", filled[:stop], filled[lag:]))
             pairs[lag] += float(np.einsum("i,i->", weight[:stop], weight[lag:]))
+            possible[lag] += stop
     if lags < 0 or total[0] <= 0:
         return np.ones(1)
     covariance = total / np.maximum(pairs, 1.0)
-    return np.asarray(covariance / covariance[0])
+    rho = np.asarray(covariance / covariance[0])
+    return rho if np.all(pairs > _MET * possible) else _filled_in(rho, pairs, pairs > _MET * possible)
+
+
+def _filled_in(rho: FloatArray, pairs: FloatArray, met: npt.NDArray[np.bool_]) -> FloatArray:
+    """The correlation with the lags that are not met as of a first-order memory between those that are: it goes along
+    a power of the lag's length, and from what is no more than chance there is no way."""
+    certain = np.where(rho > 2.0 / np.sqrt(np.maximum(pairs, 1.0)), rho, _NONE)
+    lags = np.arange(rho.size)
+    return np.where(met, rho, np.exp(np.interp(lags, lags[met], np.log(certain[met]))))
 
 
 def correlation_samples(rho: FloatArray) -> float:

@@ -1,7 +1,7 @@
-"""Stretches where a signal rests, or moves evenly, and the fastest part of it everywhere: noise without repeats.
+"""Stretches where a signal rests, or moves evenly: noise without repeats.
 
 A stretch is judged in windows of 2.5 s and at least 20 samples about a parabola; windows that follow each other are
-joined. Slow settling and creep inside a stretch go with the parabola.
+joined. Slow settling and creep inside a stretch go with the parabola. Missing readings have no weight.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from scipy.ndimage import median_filter
 from scipy.signal import lfilter
 
 from logs.recording import FloatArray
-from twin.noise.robust import robust_sigma
+from twin.noise.fast import fast_sigma
 
 IntArray = npt.NDArray[np.int64]
 
@@ -24,9 +24,8 @@ _STRETCH_S = 60.0  # longer stretches are cut: over minutes creep is no parabola
 _TREND_SIGMAS = 3.0
 _FAST_RATIO = 5.0  # noise with a memory of ten samples is four times louder than its fast part; motion is more
 _STRAIGHT = 5e-4  # of the command's range
-_BLOCK, _QUARTILE = 6, 0.67  # the lower quartile of the RMS of six second differences of white noise of sigma 1
-_MOST = 200_000  # rows for the memory of the fast part
 _PLAIN = 1.5  # windows louder than this over the quieter third hold a corner or a slip
+_FEWEST, _HOLE = 8, 3  # readings that a window must have; a hole of more than this part (1/n) of it says nothing
 
 
 def window_rows(period_s: float) -> int:
@@ -77,59 +76,18 @@ def still_pieces(signal: FloatArray, period_s: float, starts: IntArray, still: b
         return []
     width = window_rows(period_s)
     fast = fast_sigma(signal)
-    calm = _without_outliers(_filled(signal), 6.0 * fast)
+    calm = _without_outliers(signal, 6.0 * fast)
     windows = calm[starts[:, None] + np.arange(width)]
-    basis = _parabola(width)
-    fitted = windows @ basis @ basis.T
-    spread = _spread(windows - fitted)
-    good = np.isfinite(signal)[starts[:, None] + np.arange(width)].mean(axis=1) > 0.9
-    good &= spread <= _FAST_RATIO * fast
+    good = _enough(np.isfinite(windows))
+    starts, windows = starts[good], windows[good]
+    fitted, spread = _about_parabolas(windows)
+    good = spread <= _FAST_RATIO * fast
     if still:
         good &= np.ptp(fitted, axis=1) <= _TREND_SIGMAS * spread
     elif good.any():
         good &= spread <= _PLAIN * float(np.quantile(spread[good], 0.3))
     longest = max(1, round(_STRETCH_S / (width * period_s)))
     return [_detrended(signal[a:b], calm[a:b]) for a, b in _joined(starts[good], width, longest)]
-
-
-def fast_sigma(signal: FloatArray) -> float:
-    """Sigma of white noise from second differences: motion smooth over three samples cancels, slow noise does too.
-
-    Where motion fills most of the record, its quieter stretches speak for it.
-    """
-    if signal.size < 3:
-        return 0.0
-    second = np.diff(signal, 2)
-    count = second.size // _BLOCK
-    whole = robust_sigma(second) / np.sqrt(6.0)
-    if count < 10:
-        return float(whole)
-    blocks = np.sqrt(np.mean(np.square(np.nan_to_num(second[: count * _BLOCK])).reshape(count, _BLOCK), axis=1) / 6.0)
-    return float(min(whole, np.quantile(blocks, 0.25) / _QUARTILE) or whole)
-
-
-def fast_memory(signal: FloatArray) -> tuple[float, float]:
-    """Sigma and lag-one correlation of noise with a short memory, from second differences over growing spans.
-
-    Their variance levels off for noise and grows with the fourth power of the span for motion: the last span before
-    that growth holds the noise. Correlation 0 where the first span grows already.
-    """
-    signal = signal[:_MOST]
-    first = level = fast_sigma(signal)
-    for span in (2, 4, 8, 16):
-        wider = fast_sigma_at(signal, span)
-        if not 0.0 < wider < 1.5 * level:  # noise grows by 1.41 at most, motion four times
-            break
-        level = max(level, wider)
-    ratio = min(1.0, (first / level) ** 2) if level > 0 else 1.0
-    # for a first-order memory phi: (first / level)^2 = 1 - (4 phi - phi^2) / 3
-    phi = 2.0 - float(np.sqrt(4.0 - 3.0 * (1.0 - ratio)))
-    return level, phi
-
-
-def fast_sigma_at(signal: FloatArray, span: int) -> float:
-    """`fast_sigma` of every `span`-th sample, the median over the ways to take them."""
-    return float(np.median([fast_sigma(signal[k::span]) for k in range(span)]))
 
 
 def given_back(rho: FloatArray, sizes: Sequence[int]) -> tuple[FloatArray, float]:
@@ -177,32 +135,61 @@ def _parabola(size: int) -> FloatArray:
     return np.asarray(np.linalg.qr(np.stack([np.ones(size), x, x * x], axis=1))[0])
 
 
+def _enough(seen: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
+    """Which windows, shape (n, rows), have the readings for a parabola, and no hole in which it could go anywhere."""
+    width = seen.shape[1]
+    hole = width // _HOLE + 1
+    whole = np.concatenate([np.zeros((seen.shape[0], 1)), np.cumsum(seen, axis=1)], axis=1)
+    fewest_in_hole = (whole[:, hole:] - whole[:, :-hole]).min(axis=1)
+    return np.asarray((whole[:, -1] >= _FEWEST) & (fewest_in_hole > 0))
+
+
+def _about_parabolas(windows: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """The parabola of each window, shape (n, rows), and a robust sigma about it, shape (n,)."""
+    basis = _parabola(windows.shape[1])
+    fitted = windows @ basis @ basis.T
+    seen = np.isfinite(windows)
+    lacking = ~seen.all(axis=1)
+    if not lacking.any():
+        return fitted, _spread(windows - fitted)
+    weight, read = seen[lacking].astype(np.float64), np.where(seen, windows, 0.0)[lacking]
+    normal = np.einsum("kr,ri,rj->kij", weight, basis, basis)
+    fitted[lacking] = np.linalg.solve(normal, (read @ basis)[..., None])[..., 0] @ basis.T
+    # of fewer readings the parabola takes more: they get as much back as a window has that lacks none
+    taken = (1.0 - 3.0 / windows.shape[1]) / (1.0 - 3.0 / seen.sum(axis=1))
+    return fitted, _spread(windows - fitted) * np.where(lacking, np.sqrt(taken), 1.0)
+
+
 def _spread(windows: FloatArray) -> FloatArray:
     """A robust sigma of each row; where most of a row sits on one quantization step, the mean deviation's."""
     deviation = np.abs(windows)
-    middle = 1.4826 * np.median(deviation, axis=1)
-    return np.where(middle > 0.0, middle, 1.2533 * deviation.mean(axis=1))
+    middle = 1.4826 * (np.nanmedian if np.isnan(deviation).any() else np.median)(deviation, axis=1)
+    return np.where(middle > 0.0, middle, 1.2533 * np.nanmean(deviation, axis=1))
 
 
 def _detrended(piece: FloatArray, calm: FloatArray) -> FloatArray:
     """The piece less the parabola of its calm version, with the variance that takes from white noise given back."""
-    basis = _parabola(piece.size)
-    return np.asarray((piece - basis @ (basis.T @ calm)) * np.sqrt(piece.size / (piece.size - 3.0)))
+    readings = np.count_nonzero(np.isfinite(piece))
+    return np.asarray((piece - _through(calm)) * np.sqrt(readings / (readings - 3.0)))
+
+
+def _through(values: FloatArray) -> FloatArray:
+    """The parabola of least squares through the values that are not missing, at all rows."""
+    basis = _parabola(values.size)
+    seen = np.isfinite(values)
+    if seen.all():
+        return np.asarray(basis @ (basis.T @ values))
+    return np.asarray(basis @ np.linalg.lstsq(basis[seen], values[seen], rcond=None)[0])
 
 
 def _without_outliers(signal: FloatArray, bound: float) -> FloatArray:
-    """The signal with what is further than `bound` from the median of five samples set to that median."""
-    middle = median_filter(signal, 5, mode="nearest")
-    return np.where(np.abs(signal - middle) > bound, middle, signal)
-
-
-def _filled(signal: FloatArray) -> FloatArray:
-    """The signal with missing samples interpolated."""
-    known = np.isfinite(signal)
-    if known.all() or not known.any():
-        return signal
-    rows = np.arange(signal.size)
-    return np.interp(rows, rows[known], signal[known])
+    """The signal with what is further than `bound` from the median of five readings set to that median."""
+    calm = signal.copy()
+    seen = np.isfinite(signal)
+    readings = signal[seen]
+    middle = median_filter(readings, 5, mode="nearest") if readings.size else readings
+    calm[seen] = np.where(np.abs(readings - middle) > bound, middle, readings)
+    return calm
 
 
 def _joined(starts: IntArray, width: int, longest: int) -> list[tuple[int, int]]:
