@@ -100,9 +100,10 @@ class Observer:
         pressure_error = seen.pressure_psi - inside.p
         p = inside.p + self.pressure_gain * pressure_error
         innovation = seen.position_in - inside.x
-        x = inside.x + min(dt_s * max(1.6 * omega - 1.0 / d.tau_s, 0.3), 0.8) * innovation
-        push = min(dt_s * d.tau_s * omega * omega, 0.8 / dt_s * d.tau_s) * innovation
-        running = abs(inside.w - inside.x) > d.rate_limit * d.tau_s
+        tau_s = d.tau_s or dt_s  # of a stem that is said to have no lag no more is seen than that it follows in a tick
+        x = inside.x + min(dt_s * max(1.6 * omega - 1.0 / tau_s, 0.3), 0.8) * innovation
+        push = min(dt_s * tau_s * omega * omega, 0.8 / dt_s * tau_s) * innovation
+        running = abs(inside.w - inside.x) > d.rate_limit * tau_s
         if running and push * (inside.w - inside.x) > 0.0:
             push = 0.0  # faster than the limit says nothing of how far the play output is ahead
         moved = self.on_stop(replace(self.learn_converter(inside, pressure_error, seen, dt_s), p=p, x=x))

@@ -17,6 +17,7 @@ from control.design import DesignModel, check_for_control
 
 WANTED_MARGIN = 2.0
 MOST = 50.0
+_NOTHING = 1e-3  # of where a margin is first looked for: a smaller one is none
 CAP = 5.0  # in 1 / compliance: an error of the reading's noise, 0.0006 in, then moves the thesis's pressure 0.016 psi
 
 
@@ -156,11 +157,17 @@ def _linear(make: Callable[[float], LinearLoop], design: DesignModel, form: str)
 
 
 def _limit(bad: Callable[[float], bool], low: float, high: float) -> float:
-    """Where `bad` begins, to 1 %, on the good side; infinite where it does not begin below `high`.
+    """Where `bad` begins, to 1 %, on the good side; infinite where it does not begin below `high`, 0 where it is bad
+    down to `_NOTHING` of `low`.
 
-    Goes up in steps of at most 40 %: `bad` need not be monotonic far above the point where it begins.
+    Goes up in steps of at most 40 %: `bad` need not be monotonic far above the point where it begins. Where it is bad
+    at `low` already, it first goes down.
     """
     good, step = low, 1.4
+    while bad(good):
+        good /= step
+        if good < _NOTHING * low:
+            return 0.0
     while good < high:
         if bad(good * step):
             if step < 1.01:

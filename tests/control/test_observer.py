@@ -8,10 +8,11 @@ import numpy as np
 import pytest
 
 from app.physics_bench import open_virtual
-from control.controller import Seen
+from control.controller import Seen, controller_names, make_controller
 from control.design import DesignModel
 from control.observer import Inside, Observer, follow
 from control.prediction import predict_positions
+from hal.sample import Reading, Sample
 
 DESIGN = DesignModel()
 TICK_S = 0.1
@@ -81,3 +82,18 @@ def test_many_plans_at_once_are_the_same_plans_one_by_one() -> None:
         for command in plan:
             one = observer.ahead(one, float(command), TICK_S)
         assert positions[-1] == pytest.approx(one.x, abs=0.003)
+
+
+@pytest.mark.parametrize("name", controller_names())
+def test_a_stem_without_a_lag_breaks_no_controller(name: str) -> None:
+    """The model file allows it, and so does a record in which none is seen."""
+    law = make_controller(name, DesignModel(tau_s=0.0))
+    state, command_psi = law.initial(_sample(0.0, 5.0), 0.3), 5.0
+    for tick in range(1, 60):
+        state, command_psi = law.step(state, _sample(0.1 * tick, command_psi), 0.3, 0.1)
+        assert np.isfinite(command_psi)
+
+
+def _sample(time_s: float, command_psi: float) -> Sample:
+    position_in = min(max(0.19 * (command_psi - 8.0), 0.0), 0.5625)
+    return Sample(time_s, command_psi, Reading(position_in, time_s, 0.0), Reading(command_psi, time_s, 0.0))

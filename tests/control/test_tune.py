@@ -46,8 +46,25 @@ def test_a_delay_costs_an_incremental_law_more_in_its_position_than_in_its_press
     assert pi.late_s == pytest.approx(pi.delay_s, rel=1e-6)
 
 
+@pytest.mark.parametrize("kp", [86.0, 88.0])
+def test_a_margin_below_the_first_look_is_no_larger_than_it_is(kp: float) -> None:
+    loop = LinearLoop("p", kp)
+    found = margins(loop, DESIGN)
+    assert 0.0 < found.delay_s < 0.05
+    assert not hunts(replace(loop, dead_time_s=found.delay_s), DESIGN)
+    assert hunts(replace(loop, dead_time_s=1.02 * found.delay_s), DESIGN)
+
+
+def test_a_loop_that_hunts_as_it_is_has_no_margin() -> None:
+    found = margins(LinearLoop("p", 95.0), DESIGN)
+    assert (found.delay_s, found.late_s) == (0.0, 0.0)
+    assert found.gain == pytest.approx(89.4 / 95.0, rel=0.02)
+
+
 def test_unusable_designs_are_refused() -> None:
     with pytest.raises(BadInput, match="no deadband"):
         tune(replace(DESIGN, a1=5.82), 0.1)
+    with pytest.raises(BadInput, match="has no lag"):
+        tune(replace(DESIGN, tau_s=0.0), 0.1)
     with pytest.raises(BadInput, match="percent"):
         tune(replace(DESIGN, pressure_unit="percent"), 0.1)

@@ -206,3 +206,14 @@ def test_false_readings_do_not_blur_a_step() -> None:
     reading = np.round(rng.uniform(0.0, 0.56, 4000) / step) * step
     reading[rng.choice(4000, 40, replace=False)] = rng.uniform(-3.0, 3.0, 40)
     assert step_doubt(reading, step) < 1e-9
+
+
+def test_a_reading_that_never_changes_is_not_refreshed_slowly() -> None:
+    """One record of several may rest at a stop, whose reading is rounded: nothing is seen of when it was read."""
+    rests = Recording("rest", DT * np.arange(400), np.full(400, 15.0), np.full(400, 0.5625))
+    noise = estimate_noise([rests, quantized(record(Toy(), COMMAND, DT, 1, SIGMA))])
+    assert not scan_events(rests, noise).evidence["stale_samples"].found
+    once = replace(rests, position=np.where(np.arange(400) < 200, 0.5625, 0.5624))
+    period = scan_events(once, noise).evidence["stale_samples"].estimates["refresh_period"]
+    assert np.isfinite([period.value, *period.ci95]).all()
+    assert period.value <= once.duration_s

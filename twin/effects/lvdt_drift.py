@@ -90,6 +90,8 @@ _PERIOD = Parameter(
 
 #: Instants at which a jump is looked for: a start too far off finds no way to it.
 _LOOKS = 48
+#: The stem's time constant in which a zero creeps, of a design that says it has none [s].
+_LEAST_S = 1e-3
 _STEP = replace(_CHANGE, name="zero", starts=(-0.005, 0.005), doc="by how much the zero jumps")
 _WHEN = Parameter(
     name="when",
@@ -130,7 +132,7 @@ def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _root(c: Coefficients, values: Sequence[float]) -> None:
-    c.sensor[[S_ROOT, S_ROOT_SINCE_S]] = values[0] / (300.0 * c.design.tau_s) ** 0.5, c.since_s
+    c.sensor[[S_ROOT, S_ROOT_SINCE_S]] = values[0] / (300.0 * max(c.design.tau_s, _LEAST_S)) ** 0.5, c.since_s
     c.sensor[S_ZERO] += c.sensor[S_ROOT] * np.sqrt(c.since_s)
 
 

@@ -38,6 +38,8 @@ def stale_samples(
     t, y = time_s[known], reading[known]
     if y.size < 50:
         return nothing(effect, "fewer than 50 readings")
+    if np.ptp(y) == 0.0:
+        return nothing(effect, "the reading never changes")
     period = float(np.median(np.diff(t)))
     rows = np.arange(0, y.size - 1)[:: max(1, y.size // _MOST)]
     same = (y[rows + 1] == y[rows]).astype(np.float64)
@@ -59,7 +61,8 @@ def _period(time_s: FloatArray, reading: FloatArray, row_s: float, hold: tuple[f
     """Time between refreshes [s]: by the converter's own clock, else from the share of rows held (value, interval)."""
     clock = clock_of(time_s, reading)
     if clock is None:
-        value, low, high = (row_s / (1.0 - share) for share in hold)
+        most = 1.0 - row_s / max(float(time_s[-1] - time_s[0]), 2.0 * row_s)  # longer than the record is not seen
+        value, low, high = (row_s / (1.0 - min(share, most)) for share in hold)
         return Estimate(value, (low, high), "s")
     # over the record the clock may go wrong by the room that it leaves, once
     off_s = clock.slack_s * clock.period_s / max(float(time_s[-1] - time_s[0]), clock.period_s)
