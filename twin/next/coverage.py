@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from control.design import DesignModel
 from control.experiment import Experiment
 from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.diagnosis import EffectTest
-from twin.effect import Form, Parameter, Scales
+from twin.effect import Parameter, Scales
 from twin.next.candidates import library
 from twin.next.criterion import Scale, effect_distance, lay_out, response
 from twin.next.limits import Limits
@@ -40,17 +41,18 @@ class Coverage:
     value: float
 
 
-def blind_spots(tests: Sequence[EffectTest], scales: Scales) -> list[BlindSpot]:
-    """Effects that are not testable, or only where they are larger than clear."""
+def blind_spots(tests: Sequence[EffectTest], scales: Scales, design: DesignModel) -> list[BlindSpot]:
+    """Effects that are not testable, or only where they are larger than clear on a valve of this design."""
     spots = []
     for test in tests:
         if test.name not in effects():
             continue
         effect = effects()[test.name]
         form = effect.form(test.form) if test.form else effect.forms[0]
-        inserted = Inserted(test.name, form, _clear(form, scales))
+        clear = tuple(_clear(p, scales, design) for p in form.parameters)
+        inserted = Inserted(test.name, form, clear)
         main = next((k for k, p in enumerate(form.parameters) if p.name == test.parameter), None)
-        hidden = main is not None and test.detection_limit is not None and _beyond(form, main, test, scales)
+        hidden = main is not None and _beyond(form.parameters[main], clear[main], test, scales)
         if not test.testable or hidden:
             spots.append(BlindSpot(test.name, inserted))
     return spots
@@ -103,9 +105,26 @@ def _shares(
     return [shares[spot.name] for spot in spots]
 
 
-def _clear(form: Form, scales: Scales) -> tuple[float, ...]:
-    """Values of a clear effect; shape parameters at their first start."""
-    return tuple((_clear_size(p) if p.size else p.starts[0]) * scales.factor(p.kind) for p in form.parameters)
+def weakens(test: EffectTest) -> bool:
+    """Whether an effect shows where its parameter is small, as a supply does: nothing is wrong with a high one."""
+    form = effects()[test.name].form(test.form) if test.form else effects()[test.name].forms[0]
+    main = next((p for p in form.parameters if p.name == test.parameter), None)
+    return main is not None and _only_lower(main)
+
+
+def _only_lower(p: Parameter) -> bool:
+    return p.neutral > max(p.starts)
+
+
+def _clear(p: Parameter, scales: Scales, design: DesignModel) -> float:
+    """The value of a clear effect [record units]; shape parameters at their first start.
+
+    A ceiling of the pressure is clear where it costs half of the stroke: what is above all that the valve needs is no
+    fault, and nothing could show it.
+    """
+    value = (_clear_size(p) if p.size else p.starts[0]) * scales.factor(p.kind)
+    ceiling = p.size and p.kind == "pressure" and _only_lower(p)
+    return min(value, design.a1 + 0.5 * design.travel / design.compliance) if ceiling else value
 
 
 def _clear_size(p: Parameter) -> float:
@@ -117,8 +136,7 @@ def _clear_size(p: Parameter) -> float:
     return min(max(p.neutral + 0.5 * side * p.scale, p.lower), p.upper)
 
 
-def _beyond(form: Form, main: int, test: EffectTest, scales: Scales) -> bool:
-    p = form.parameters[main]
-    factor = scales.factor(p.kind)
-    limit = None if test.detection_limit is None else abs(test.detection_limit - p.neutral * factor)
-    return limit is not None and limit > abs(_clear_size(p) - p.neutral) * factor
+def _beyond(p: Parameter, clear: float, test: EffectTest, scales: Scales) -> bool:
+    """Whether the record shows the effect only where it is larger than clear."""
+    neutral = p.neutral * scales.factor(p.kind)
+    return test.detection_limit is not None and abs(test.detection_limit - neutral) > abs(clear - neutral)

@@ -14,7 +14,7 @@ from control.preview import duration_words
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest, NextExperiment
-from twin.next.coverage import best_coverage, blind_spots
+from twin.next.coverage import best_coverage, blind_spots, weakens
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
 from twin.next.fresh import open_sweep, poor_ground
@@ -155,7 +155,7 @@ def _coverage(
     result: StageResult, judgement: Judgement, tests: Sequence[EffectTest], rules: DecisionRules, limits: Limits
 ) -> Proposal:
     """After `no_gap` or `unexplained`: what would show the effects that these records could not have shown."""
-    spots = blind_spots(tests, result.case.scales)
+    spots = blind_spots(tests, result.case.scales, result.case.base.design)
     unexplained = judgement.verdict == "unexplained"
     start = "None of the known effects accounts for the gap. " if unexplained else ""
     fresh = _fresh_start(result, limits, start) if unexplained else None
@@ -199,7 +199,8 @@ def _blind_words(names: Sequence[str], tests: Sequence[EffectTest]) -> str:
         if name in limits:
             test = limits[name]
             size = f"{test.detection_limit:.2g} {'' if test.unit == '1' else test.unit}".strip()
-            words.append(f"{_plain(name)} (here only with a {_plain(test.parameter)} above {size})")
+            side = "below" if weakens(test) else "above"
+            words.append(f"{_plain(name)} (here only with a {_plain(test.parameter)} {side} {size})")
     return ", ".join(words)
 
 

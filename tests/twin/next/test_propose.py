@@ -99,7 +99,7 @@ def test_an_effect_seen_only_when_huge_counts_as_not_shown() -> None:
 def test_what_is_clear_is_clear_in_the_form_that_shows_first() -> None:
     def spots(share: float) -> list[str]:
         test = EffectTest("distributed_hysteresis", True, "", "soft_share", share, "1", "partly_soft")
-        return [spot.inserted.form.name for spot in blind_spots([test], Scales())]
+        return [spot.inserted.form.name for spot in blind_spots([test], Scales(), DesignModel())]
 
     assert spots(0.5) == ["partly_soft"]
     assert spots(0.01) == []
@@ -111,6 +111,18 @@ def test_what_a_record_shows_only_from_a_size_on_is_said_with_that_size() -> Non
     why = proposed(result(*PAIR), judged(), (huge, blind)).next.why
     assert "friction in motion (here not testable)" in why
     assert "creep (here only with a share above 0.5)" in why
+
+
+def test_a_supply_shows_where_it_is_low_and_a_high_one_is_no_fault() -> None:
+    """14 psi are more than a stroke takes, 11.7 psi; the record that shows a supply of that would show any that is
+    too weak. One that was driven to 9 psi would not."""
+
+    def why(psi: float) -> str:
+        test = EffectTest("supply_saturation", True, "", "supply", psi, "psi", "ceiling")
+        return proposed(result(*PAIR), judged(), (test,)).next.why
+
+    assert "supply" not in why(14.0) and "no further experiment is needed" in why(14.0)
+    assert "supply saturation (here only with a supply below 9 psi)" in why(9.0)
 
 
 def in_closed_loop() -> SimpleNamespace:
