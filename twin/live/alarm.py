@@ -1,7 +1,8 @@
 """The drift alarm: a two-sided CUSUM on the whitened residual of the bench, with a stated false-alarm rate.
 
 It answers a lasting shift of the residual, not a short one: the reference value is half of the smallest shift that
-matters, so a model error below that half never adds up, however long it lasts.
+matters. A model error adds up from there on, and with noise on it somewhat earlier: at the half itself the sum is a
+walk without drift, which reaches any limit. Up to where the stated rate holds is told by `Cusum.forgives`.
 Source: Page, Biometrika 41 (1954) 100; Siegmund, Sequential Analysis (Springer 1985), ch. 2 (average run length).
 """
 
@@ -14,6 +15,8 @@ from dataclasses import dataclass
 _OVERSHOOT = 1.166
 #: Whitened shift above which Siegmund's formula is no longer good to a few percent.
 _LARGEST_SHIFT = 1.5
+#: Noise this small against what innovations are scaled to is none.
+_QUIET = 1e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +32,15 @@ class AlarmRules:
 @dataclass(frozen=True, slots=True)
 class Cusum:
     """`scale` makes innovations unit or less, `phi` is the noise's memory from sample to sample, `reference` what is
-    subtracted at each step, `limit` where the alarm is. `delay_s`: mean time to notice the smallest shift."""
+    subtracted at each step, `limit` where the alarm is. `delay_s`: mean time to notice the smallest shift. `forgives`:
+    lasting error of the model [unit of the residual] up to which false alarms are as rare as stated."""
 
     phi: float
     scale: float
     reference: float
     limit: float
     delay_s: float
+    forgives: float
 
     def step(self, state: CusumState, residual: float, time_s: float) -> CusumState:
         """The state after one more residual; NaN holds it."""
@@ -79,7 +84,19 @@ def design_cusum(shift: float, sigma: float, phi: float, period_s: float, rules:
     whitened = min(most, patient)
     reference = 0.5 * whitened
     limit = limit_for(reference, samples)
-    return Cusum(phi, shift * (1.0 - phi) / whitened, reference, limit, period_s * limit / reference)
+    scale = shift * (1.0 - phi) / whitened
+    loud = max(innovation / scale, _QUIET)  # the whitened noise's own standard deviation
+    forgives = loud * scale / (1.0 - phi) * _forgiven(limit / loud, reference / loud, samples)
+    return Cusum(phi, scale, reference, limit, period_s * limit / reference, forgives)
+
+
+def _forgiven(limit: float, reference: float, samples: float) -> float:
+    """The largest shift with which an alarm still comes once in `samples` on average, or less often; 0 for none."""
+    low, high = 0.0, reference
+    for _ in range(50):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if run_length(limit, reference, middle) >= samples else (low, middle)
+    return low
 
 
 def run_length(limit: float, reference: float, shift: float = 0.0) -> float:
