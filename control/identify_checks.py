@@ -11,6 +11,7 @@ from control.identify_readings import fast_noise
 from control.identify_result import Estimate
 from control.identify_tracks import FEWEST_ROWS
 from control.identify_valve import ROUGH_S, Track
+from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording
 from logs.units import PERCENT
@@ -45,6 +46,8 @@ def check_records(recordings: Sequence[Recording]) -> None:
         )
     moved = max(float(np.ptp(np.nanpercentile(each.position, (1, 99)))) for each in recordings)
     if moved <= 8.0 * max(fast_noise(each.position) for each in recordings):
+        for each in recordings:
+            refuse_sparse_motion(each, each.command)
         raise BadInput(
             f"{first.name}: the position never leaves its noise; identifying takes a record that moves over both curves"
         )

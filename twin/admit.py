@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput
 from logs.recording import DataNote, FloatArray, Recording
 from twin.noise.model import NoiseModel
@@ -35,11 +36,13 @@ _PARTS = 64
 
 @dataclass(frozen=True, slots=True)
 class _Motion:
-    """How far the readings go, how far the design says they should, and whether the two go together (-1..1)."""
+    """How far the readings go, how far the design says they should, whether the two go together (-1..1), and the
+    design's stem, shape (n,)."""
 
     reading: float
     predicted: float
     together: float
+    model: FloatArray
 
 
 def admit(recordings: Sequence[Recording], plant: Plant, noise: NoiseModel) -> list[DataNote]:
@@ -105,9 +108,9 @@ def _motion(recording: Recording, plant: Plant) -> _Motion:
     seen = np.isfinite(recording.position)
     reading, model = recording.position[seen], predicted[seen]
     if reading.size < 3:
-        return _Motion(0.0, _reach(predicted), 0.0)
+        return _Motion(0.0, _reach(predicted), 0.0, predicted)
     together = float(np.corrcoef(reading, model)[0, 1]) if np.ptp(reading) > 0.0 and np.ptp(model) > 0.0 else 0.0
-    return _Motion(_reach(reading), _reach(model), together)
+    return _Motion(_reach(reading), _reach(model), together, predicted)
 
 
 def _reach(values: FloatArray) -> float:
@@ -123,6 +126,9 @@ def _refuse_still(recordings: Sequence[Recording], motions: Sequence[_Motion], p
         )
     expected = max(m.predicted for m in motions)
     if expected > PREDICTED * plant.design.travel:
+        for one, motion in zip(recordings, motions, strict=True):
+            if motion.reading > PREDICTED * plant.design.travel:
+                refuse_sparse_motion(one, motion.model)
         share = 100.0 * expected / plant.design.travel
         raise BadInput(
             f"{names}: the position never leaves its noise while the command should move it by {share:.0f} % of "

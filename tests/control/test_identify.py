@@ -152,6 +152,10 @@ def test_what_cannot_be_identified_is_refused_in_words() -> None:
         identify([replace(plain, command=np.full(plain.n, 9.0))])
     with pytest.raises(BadInput, match="never leaves its noise"):
         identify([replace(plain, position=0.001 * np.random.default_rng(0).standard_normal(plain.n))])
+    levels = np.random.default_rng(2).uniform(5.0, 12.0, 60)
+    far = Recording("far", 12.0 * np.arange(60), levels, 0.19 * (levels - 5.0))
+    with pytest.raises(BadInput, match=r"so much from row to row \(every 12 s\)"):
+        identify([far])
     with pytest.raises(BadInput, match="bring them to the same units"):
         identify([plain, replace(plain, position_unit="percent")])
     with pytest.raises(BadInput, match="12 rows are too few"):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,7 @@ from logs.recording import FloatArray, Recording
 from twin.admit import admit
 from twin.noise.model import estimate_noise
 from twin.plant import Plant
+from twin.simulate import simulate_recording
 
 TIME_S = np.arange(0.0, 300.0, 0.1)
 NOISE = 4e-4 * np.random.default_rng(1).standard_normal(TIME_S.size)
@@ -62,3 +65,15 @@ def test_a_drift_a_settling_a_quick_swing_and_false_readings_at_a_constant_comma
     admitted(settling + 1e-4 * TIME_S)
     admitted(0.23 + 0.05 * np.sin(2.0 * np.pi * TIME_S))
     admitted(np.where(np.arange(TIME_S.size) % 97 == 5, 0.0, settling))
+
+
+def test_rows_so_far_apart_that_motion_looks_like_noise_are_not_called_a_stuck_stem() -> None:
+    """Every row is another level of a staircase, and settled there: the noise that shows is the motion."""
+    command = np.random.default_rng(2).uniform(3.0, 15.0, 60)
+    blank = Recording("r", 12.0 * np.arange(60), command, NOISE[:60])
+    records = [replace(blank, position=simulate_recording(Plant(DesignModel()), blank)[1] + NOISE[:60])]
+    with pytest.raises(BadInput, match=r"^r: .* goes with the command, .* from row to row \(every 12 s\)"):
+        admit(records, Plant(DesignModel()), estimate_noise(records))
+    stuck = [Recording("r", 12.0 * np.arange(60), command, 0.3 + NOISE[:60])]
+    with pytest.raises(BadInput, match="stem is stuck"):
+        admit(stuck, Plant(DesignModel()), estimate_noise(stuck))
