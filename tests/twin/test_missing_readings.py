@@ -89,6 +89,14 @@ def test_holes_and_rests_of_a_file_full_of_them() -> None:
     assert estimate_noise([replace(whole, position=np.full(ROWS, np.nan))]).position.sigma == 0.0
 
 
+def test_a_record_at_rest_whose_reading_never_changes_says_nothing_of_the_noise() -> None:
+    whole = healthy()
+    rests = Recording("rest", whole.time_s, np.full(ROWS, 15.0), np.full(ROWS, 0.5625), np.full(ROWS, 15.0))
+    both = estimate_noise([whole, rests]).position
+    assert both.sigma == estimate_noise([whole]).position.sigma
+    assert estimate_noise([rests]).position.sigma == 0.0
+
+
 @pytest.mark.thorough
 @pytest.mark.parametrize("pattern", ["every 2nd", 0.3])
 def test_a_healthy_valve_has_no_gap(pattern: str | float) -> None:

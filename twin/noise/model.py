@@ -99,6 +99,8 @@ def estimate_noise(recordings: Sequence[Recording], repeats: bool = True) -> Noi
 
 def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPair]) -> SignalNoise:
     known = [r for r in recordings if r.n >= 3]
+    if name == "position":  # a record that rests at a stop behind a rounded reading shows no noise, but has some
+        known = [r for r in known if not _at_rest(r.position)] or known
     if not known:
         return SignalNoise(0.0, 1.0, "none", 0, float("nan"))
     period = float(np.median([r.period_s for r in known]))
@@ -126,6 +128,12 @@ def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPa
     memory, fresh = (1.0 + phi) / (1.0 - phi), sigma * sqrt(1.0 - phi**2)
     ar = (phi,) if phi > 0.0 else ()
     return SignalNoise(sigma, memory, "high_frequency", rows, period, ar, fresh, tail_p, ratio, by_source)
+
+
+def _at_rest(reading: FloatArray) -> bool:
+    """Whether a reading never changes over a whole record."""
+    known = reading[np.isfinite(reading)]
+    return known.size > 0 and bool(np.ptp(known) == 0.0)
 
 
 def _louder(by_source: Mapping[str, float]) -> bool:
