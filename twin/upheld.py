@@ -58,9 +58,7 @@ def upheld(
     if not judgement.causes:
         return (parts, judgement) if judgement.verdict == "no_gap" else _unexplained(parts, judgement)
     if sensing.accepted:
-        if {c.name for c in judgement.causes} == {"sensor_quantization"} and before > _coarse(floor, sensing.step):
-            return _unexplained(parts, judgement)
-        return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
+        return _seen(parts, judgement, floor, sensing, shown)
     # what the pressure shows need not reach the stem, unless that is clearly off
     told = before <= CLEAR * floor and {c.name for c in judgement.causes} <= set(shown)
     vain = (after > NO_BETTER * before and not told) or (swings and not exact) or _doubted(judgement, exact)
@@ -72,6 +70,16 @@ def upheld(
     if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
         return _unexplained(parts, judgement)
     return parts, judgement
+
+
+def _seen(
+    parts: GapParts, judgement: Judgement, floor: float, sensing: Sensing, shown: Collection[str]
+) -> tuple[GapParts, Judgement]:
+    """The judgement where the readings themselves showed something, which needs no prediction."""
+    before = rms(parts.before)
+    if {c.name for c in judgement.causes} == {"sensor_quantization"} and before > _coarse(floor, sensing.step):
+        return _unexplained(parts, judgement)
+    return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
 
 
 def _coarse(floor: float, step: float) -> float:

@@ -83,12 +83,8 @@ class PlainValve:
         fine = np.repeat(command[1:], np.diff(rows))
         fine = self._mixing(np.concatenate([np.full(late, command[0]), fine])[: rows[-1]], step_s)
         p = held = command[0]
-        free = replace(self, breakaway=0.0)
-        k1, k2 = self.k1 / (1.0 + self.stiffens), self.k2 / (1.0 + self.stiffens)
-        broken = replace(self, a1=self.a1 + self.takes, a2=self.a2 + self.takes, k1=k1, k2=k2)
-        w = v = free._play(
-            p - self.push(x0), x0, 0.0, self.grip(x0), self.stretch(x0)
-        )  # the play output that pressure allows
+        free, broken = replace(self, breakaway=0.0), self._broken()
+        w = v = free._play(p - self.push(x0), x0, 0.0, self.grip(x0), self.stretch(x0))  # what the pressure allows
         x = slow = core = x0
         sunk = 0.0
         lagged = self.reading(x, 0.0)
@@ -101,8 +97,8 @@ class PlainValve:
             aimed, cut = (inf, self.tank - sunk) if self.tank_cuts else (self.tank - sunk, inf)
             p = min(self._pressure(p, min(self._softly(self.zero + self.gain * held), aimed), step_s), cut)
             sunk += 0.4 * max(p - before, 0.0) - sunk * step_s / 20.0
-            now = self if t < self.breaks_s else broken
-            w = now._play(p - self.push(x), x if self.in_motion else w, t, self.grip(x), self.stretch(x))
+            now, w = (self if t < self.breaks_s else broken), x if self.in_motion else w
+            w = now._play(p - self.push(x), w, t, self.grip(x), self.stretch(x))
             v = w if self.second_lag == 0.0 else v + (w - v) * step_s / self.second_lag
             tau = self.tau_close if v > x else self.tau_open
             speed = min(max((v - x) / tau, -self.rate), self.rate)
@@ -117,6 +113,10 @@ class PlainValve:
                 out_p.append(p)
                 out_y.append(lagged)
         return np.array(out_p), np.array(out_y)
+
+    def _broken(self) -> PlainValve:
+        k1, k2 = self.k1 / (1.0 + self.stiffens), self.k2 / (1.0 + self.stiffens)
+        return replace(self, a1=self.a1 + self.takes, a2=self.a2 + self.takes, k1=k1, k2=k2)
 
     def _mixing(self, command: FloatArray, step_s: float) -> FloatArray:
         """The command behind a lag."""

@@ -164,8 +164,7 @@ def test_beside_a_cause_that_explains_without_it_a_rival_is_not_heard() -> None:
 def test_no_rival_is_in_an_updated_model() -> None:
     rivals = {(e.name, f.name) for e in effects().values() for f in e.forms if f.outside}
     snaps = {("nonlinear_spring", "snaps"), ("nonlinear_spring", "stem_snaps")}
-    alike = ("asymmetric_damping", "orifice_alike")
-    drifts = ("ep_calibration", "zero_drifts")
+    alike, drifts = ("asymmetric_damping", "orifice_alike"), ("ep_calibration", "zero_drifts")
     picks_up = ("lvdt_calibration", "picks_up")
     assert rivals == {
         ("lvdt_drift", "jump"),

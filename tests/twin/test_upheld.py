@@ -51,16 +51,6 @@ def test_unseen_data_decide(levels: tuple[float, float, float], verdict: str, le
     assert kept.after[0] == left
 
 
-@pytest.mark.parametrize(("before", "verdict"), [(1.5, "effect"), (2.5, "unexplained")])
-def test_the_steps_of_a_reading_do_not_explain_more_than_they_hide(before: float, verdict: str) -> None:
-    """Steps of 2 round by 1 at most, beside noise of 1."""
-    seen = Sensing((), {"sensor_quantization": {}}, 2.0)
-    steps = replace(NAMED, causes=(Named("sensor_quantization", "sensor", 0.97, None, {}),))
-    assert upheld(parts(before, before, before), steps, 1.0, seen, True)[1].verdict == verdict
-    both = replace(steps, causes=(*steps.causes, *NAMED.causes))
-    assert upheld(parts(before, before, 1.0), both, 1.0, seen, True)[1] is both
-
-
 @pytest.mark.parametrize(("apart", "verdict"), [(True, "effect"), (False, "unexplained")])
 def test_a_cause_before_a_measured_pressure_is_not_judged_by_what_a_slight_gap_leaves(
     apart: bool, verdict: str

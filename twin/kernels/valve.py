@@ -16,6 +16,7 @@ from twin.kernels.coupled import coupled_steps
 from twin.kernels.coupled_start import coupled_start
 from twin.kernels.dahl import dahl_target
 from twin.kernels.elastic import elastic_start, elastic_steps
+from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
@@ -24,29 +25,21 @@ from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
 from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched
 from twin.slots import (
-    FOREVER,
     V_BREAKAWAY,
-    V_BREAKS,
-    V_BREAKS_S,
     V_DAHL,
     V_DAHL_HALF,
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
-    V_DRIFT_AMP,
-    V_DRIFT_RATE,
-    V_DRIFT_TAU_S,
     V_EASES,
     V_EASES_AT,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
-    V_HALF,
     V_HELD,
     V_HIGH,
     V_IN_MOTION,
     V_INERTIA_S,
     V_KEPT,
     V_LOW,
-    V_MIDDLE,
     V_ON_STEM,
     V_OUTER,
     V_OUTER_CENTRE,
@@ -58,11 +51,6 @@ from twin.slots import (
     V_ROUNDED,
     V_SHORT,
     V_SQUARED_S,
-    V_STEP,
-    V_STEP_EASES,
-    V_STEP_EASES_S,
-    V_STEP_TIME_S,
-    V_STIFFENS,
     V_STRETCHES,
     V_STRIBECK,
     V_TARGET_CREEPS,
@@ -204,9 +192,8 @@ def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: Flo
     if c[V_FORCE_CREEP] != 0.0:
         late = lagged(time_s, offsets, force, c[V_FORCE_CREEP_TAU_S])
         force = force + c[V_FORCE_CREEP] * (late - force)
-    if c[V_BREAKS_S] < FOREVER:
-        unbroken = c[V_MIDDLE] + (force - c[V_MIDDLE] - c[V_BREAKS]) / (1.0 + c[V_STIFFENS])
-        force = np.where(elapsed_s(time_s, offsets) < c[V_BREAKS_S], force, unbroken)
+    if breaks(c):
+        force = as_unbroken(force, elapsed_s(time_s, offsets), c)
     if c[V_OUTER] > 0.0:
         inner = np.empty_like(force)
         plain_play(force, c[V_OUTER], c[V_OUTER_CENTRE] + c[V_OUTER_SLOPE] * w0, inner)
@@ -215,20 +202,5 @@ def _force(time_s: FloatArray, offsets: np.ndarray, pressure: FloatArray, c: Flo
 
 
 def _widening(time_s: FloatArray, offsets: np.ndarray, c: FloatArray) -> FloatArray:
-    """How much wider the half deadband is than at the start: one number, or one for each fine point [pressure].
-
-    An outer play takes its width from that of the play behind it.
-    """
-    if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP, V_STIFFENS]].any():
-        return np.array([-c[V_OUTER]])
-    t = elapsed_s(time_s, offsets)
-    widening: FloatArray = c[V_DRIFT_RATE] * t - c[V_OUTER]
-    if c[V_DRIFT_AMP] != 0.0:
-        widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
-    if c[V_STEP] != 0.0:
-        since = t - c[V_STEP_TIME_S]
-        gone = c[V_STEP_EASES] * -np.expm1(-np.maximum(since, 0.0) / c[V_STEP_EASES_S])
-        widening += np.where(since >= 0.0, c[V_STEP] * (1.0 - gone), 0.0)
-    if c[V_STIFFENS] != 0.0:  # the same friction is less of a stiffer spring
-        widening[t >= c[V_BREAKS_S]] += c[V_HALF] * (1.0 / (1.0 + c[V_STIFFENS]) - 1.0)
-    return widening
+    """How much wider the half deadband is than at the start: one number, or one for each fine point [pressure]."""
+    return widening_at(elapsed_s(time_s, offsets), c) if widens(c) else np.array([-c[V_OUTER]])

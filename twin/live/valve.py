@@ -10,6 +10,7 @@ from logs.recording import FloatArray
 from twin.effect import Coefficients
 from twin.kernels import valve as kernels
 from twin.kernels.dahl import dahl_target
+from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.tails import held_by_tails, unstretched
 from twin.live.lag import Lag
@@ -22,9 +23,6 @@ from twin.slots import (
     V_CREEP2_TAU_S,
     V_DAHL,
     V_DAHL_HALF,
-    V_DRIFT_AMP,
-    V_DRIFT_RATE,
-    V_DRIFT_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
     V_HIGH,
@@ -32,8 +30,6 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
-    V_STEP,
-    V_STEP_TIME_S,
     V_STRETCHED,
     V_STRETCHES,
     V_TARGET_CREEPS,
@@ -86,6 +82,8 @@ class Valve:
         force = self._before.follow(time_s, offsets, pressure)
         if c[V_FORCE_CREEP] != 0.0:
             force = force + c[V_FORCE_CREEP] * (self._force_tail.follow(time_s, offsets, force) - force)
+        if breaks(c):
+            force = as_unbroken(force, self._elapsed_s(time_s, offsets), c)
         if c[V_OUTER] > 0.0:
             inner = np.empty_like(force)
             plain_play(force, c[V_OUTER], self._outer, inner)
@@ -96,15 +94,11 @@ class Valve:
     def _widening(self, time_s: FloatArray, offsets: np.ndarray) -> FloatArray:
         """What is added to the half deadband: one number, or one for each fine point [pressure]."""
         c = self._c
-        if not c[[V_DRIFT_RATE, V_DRIFT_AMP, V_STEP]].any():
-            return np.array([-c[V_OUTER]])
-        t = np.linspace(time_s[0], time_s[1], int(offsets[1]) + 1) - self._origin_s
-        widening: FloatArray = c[V_DRIFT_RATE] * t - c[V_OUTER]
-        if c[V_DRIFT_AMP] != 0.0:
-            widening -= c[V_DRIFT_AMP] * np.expm1(-t / c[V_DRIFT_TAU_S])
-        if c[V_STEP] != 0.0:
-            widening[t >= c[V_STEP_TIME_S]] += c[V_STEP]
-        return widening
+        return widening_at(self._elapsed_s(time_s, offsets), c) if widens(c) else np.array([-c[V_OUTER]])
+
+    def _elapsed_s(self, time_s: FloatArray, offsets: np.ndarray) -> FloatArray:
+        """Time since the beginning at the fine points of the row [s]."""
+        return np.linspace(time_s[0], time_s[1], int(offsets[1]) + 1) - self._origin_s
 
 
 class Tails:
