@@ -15,6 +15,7 @@ from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.effect import Scales
 from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.numbers import nominal
 from twin.fit.space import SHIFTED, Cause, make_space
 
 #: Share of the gap that the effects leave without the numbers; and at least so many times the noise variance.
@@ -22,6 +23,8 @@ _SHARE, _LEAST = 0.25, 0.5
 #: Mean squared residual, of the true model's, up to which the effects' forms are right enough to judge numbers beside.
 _RIGHT = 1.5
 _ROUNDS = 8
+#: Share of a number by which it has to move, where an effect has it, to be another one.
+_ANOTHER = 0.5
 
 
 def leaning(decision: Decision, scales: Scales, rules: DecisionRules) -> Decision:
@@ -35,12 +38,14 @@ def leaning(decision: Decision, scales: Scales, rules: DecisionRules) -> Decisio
         return decision
     if accepted.mse > _RIGHT * decision.floor:
         return decision
-    needed = _Leaning(decision, scales).needed()
-    if needed is None:
-        return decision
-    upright = _upright(decision, scales, rules)
+    lean = _Leaning(decision, scales)
+    needed = lean.needed()
+    upright = None if needed is None else _upright(decision, scales, rules)
     if upright is not None:
         return upright
+    needed = needed or lean.carried()
+    if needed is None:
+        return decision
     causes = (*accepted.space.causes, needed)
     accused = _fitted(decision, causes, accepted.space.numbers, scales)
     findings = replace(decision.findings, fits=(*decision.findings.fits, accused))
@@ -75,6 +80,20 @@ class _Leaning:
         best = min(spare, key=lambda c: self._with([c]).mse)
         return None if self._left(self._with([best])) else best
 
+    def carried(self) -> Cause | None:
+        """A number that an effect makes its own, and that is another one by now; None where there is none.
+
+        A spread of breakaways has a deadband of its own, which may be all that it has of a valve designed without one.
+        """
+        accepted, base = self.decision.accepted, self.decision.accepted.space.base.design
+        own = {n for c in accepted.space.causes if c.effect is not None for n in c.effect.absorbs}
+        for name in own.intersection(accepted.space.numbers) - {n.removeprefix("parameter:") for n in accepted.names}:
+            before, after = nominal(base, name), nominal(accepted.plant.design, name)
+            another = abs(after - before) > _ANOTHER * abs(before)
+            if another and self._left(as_designed(self.decision, self.scales, but=name)):
+                return Cause(f"parameter:{name}")
+        return None
+
     def _with(self, more: Sequence[Cause]) -> Fit:
         return as_designed(self.decision, self.scales, more)
 
@@ -85,12 +104,15 @@ class _Leaning:
         return one.mse - decision.accepted.mse > max(_SHARE * gap, _LEAST)
 
 
-def as_designed(decision: Decision, scales: Scales, more: Sequence[Cause] = ()) -> Fit:
-    """The accepted causes, and `more`, with every number as designed that none of them accuses or absorbs."""
+def as_designed(decision: Decision, scales: Scales, more: Sequence[Cause] = (), but: str = "") -> Fit:
+    """The accepted causes, and `more`, with every number as designed that none of them accuses or absorbs.
+
+    And that which they absorb `but` which is to be as designed, too.
+    """
     causes = (*decision.accepted.space.causes, *more)
     numbers = {c.name.removeprefix("parameter:") for c in causes if c.effect is None}
     absorbed = {n for c in causes if c.effect is not None for n in c.effect.absorbs}
-    kept = [n for n in decision.accepted.space.numbers if n in numbers or n in absorbed]
+    kept = [n for n in decision.accepted.space.numbers if n in numbers or n in absorbed - {but}]
     return _fitted(decision, causes, kept, scales)
 
 

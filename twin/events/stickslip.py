@@ -79,9 +79,12 @@ def stick_slip(
 
 
 def pressure_change(pressure: FloatArray, start: int, stop: int) -> float:
-    """Change of pressure over the rows, from the medians of their ends."""
+    """Change of pressure over the rows, from the medians of their ends; not a number where one was not read."""
     ends = max(1, min(10, (stop - start) // 2))
-    return float(np.nanmedian(pressure[stop - ends : stop]) - np.nanmedian(pressure[start : start + ends]))
+    first, last = pressure[start : start + ends], pressure[stop - ends : stop]
+    if not (np.isfinite(first).any() and np.isfinite(last).any()):
+        return float("nan")
+    return float(np.nanmedian(last) - np.nanmedian(first))
 
 
 def _evidence(swings: list[_Swing], runs: int, time_s: FloatArray, shape: FloatArray) -> Evidence:
