@@ -81,13 +81,18 @@ def test_a_straying_gauge_is_no_gap_of_the_stem_and_is_said(gauge_psi: float, ve
 LATE = Inserted("dead_time", effect("dead_time").form("pure_delay"), (0.3,))
 
 
-def late(gauge: bool) -> Recording:
-    """A valve whose pressure gauge is late, or whose converter is."""
+def off(gauge: bool, what: Inserted) -> Recording:
+    """A valve whose pressure gauge does what only its converter could do, or whose converter does it."""
     record = a_record(Plant(DESIGN))
-    pressure, position = simulate_recording(Plant(DESIGN, (LATE,)), record)
+    pressure, position = simulate_recording(Plant(DESIGN, (what,)), record)
     if gauge:
         _, position = simulate_recording(Plant(DESIGN), record)
     return read(replace(record, pressure=pressure, position=position), 0.01)
+
+
+def late(gauge: bool) -> Recording:
+    """A valve whose pressure gauge is late, or whose converter is."""
+    return off(gauge, LATE)
 
 
 def left_with_and_without(record: Recording) -> tuple[float, float]:
@@ -115,11 +120,7 @@ def test_the_stem_denies_nothing_where_something_is_wrong_behind_the_pressure() 
 
 def high(gauge: bool) -> Recording:
     """A valve whose pressure gauge reads 0.5 psi too much, or whose converter gives so much more."""
-    record = a_record(Plant(DESIGN))
-    pressure, position = simulate_recording(Plant(DESIGN, (HIGH,)), record)
-    if gauge:
-        _, position = simulate_recording(Plant(DESIGN), record)
-    return read(replace(record, pressure=pressure, position=position), 0.01)
+    return off(gauge, HIGH)
 
 
 @pytest.mark.parametrize("gauge", [True, False])
