@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
 import pytest
 
 from tests.twin.judged import a_record
 from tests.twin.test_outside import a_fit, answered, with_form
 from twin.catalog import effect
+from twin.choose import trim
+from twin.choose.decide import Decision
 from twin.choose.needless import without_needless
+from twin.choose.trim import spoken
+from twin.choose.weigh import Weights
 from twin.fit.space import Cause
 
 CALIBRATION = effect("ep_calibration")
@@ -29,3 +37,21 @@ def test_a_drift_of_a_trifle_beside_a_zero_is_a_wander() -> None:
 def test_a_zero_under_a_pressure_that_wanders_is_named() -> None:
     found = answered(a_record(with_form("ep_calibration", "zero_drifts", 0.05, -0.008, 120.0))).diagnosis
     assert [c.name for c in found.causes] == ["ep_calibration"]
+
+
+@pytest.mark.parametrize(("channel", "heard"), [("pressure", False), ("chain", False), ("position", True)])
+def test_what_resembles_a_rival_by_a_trifle_is_the_wander_of_an_unmeasured_pressure_too(
+    channel: str, heard: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A gap that passes for healthy; behind a measured pressure the stem does not wander."""
+    spring = effect("nonlinear_spring")
+    rival = a_fit((Cause(spring.name, spring, spring.form("breaks")),), 1.0)
+    none = a_fit((), 1.5)
+    findings: Any = SimpleNamespace(channel=SimpleNamespace(name=channel, sigma=1.0), none=none)
+    monkeypatch.setattr(trim, "_guess", lambda _decision, _weights: False)
+    monkeypatch.setattr(trim, "moved_square", lambda _decision, _sigma: 0.0)
+    decision = Decision(findings, rival, explained=True, gap=True, rest=0.0)
+    [after] = spoken((decision,), Weights(), False)
+    assert after.explained is heard
+    [clear] = spoken((replace(decision, floor=0.5),), Weights(), False)
+    assert clear.explained
