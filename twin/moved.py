@@ -1,7 +1,7 @@
 """Design numbers that the updated model has elsewhere, though nobody accused them.
 
-Beside a named cause, and where nothing explains, numbers follow what the record says. What moved far is no cause that
-anything would show by itself, but whoever takes the updated model takes it, too.
+Beside a named cause, and where nothing explains, numbers follow what the record says. What moved far was not judged by
+itself, but whoever takes the updated model takes it, too.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def moved_numbers(design: DesignModel, updated: DesignModel, accused: Collection
     ]
     if not words:
         return []
-    handled = "re-tuned with the rest and not accused: nothing shows that the design is wrong there by itself"
+    handled = "re-tuned with the rest and not accused: what the record asks of it beside what is said, and no verdict"
     return [DataNote(f"the updated model has {', '.join(words)}", handled)]
 
 
