@@ -49,10 +49,11 @@ _JUMP = 0.005  # share of the command's span that is a jump
 
 def look_at(case: Case) -> tuple[Case, list[DataNote]]:
     """The case to search on: `case` itself when it is small, else a look at it that knows its whole."""
-    hidden_s = 0.0 if _short(case) else hidden_step_s(case, MOST_STEPS)
+    whole = sum(r.n for r in case.recordings)
+    # windows of a record with many rows have enough of them
+    hidden_s = 0.0 if _short(case) or whole > LOOK_ROWS else hidden_step_s(case, MOST_STEPS)
     spans = _spans(case, _short(case) or hidden_s > 0.0)
     rows = sum(s.stop - s.start for s in spans)
-    whole = sum(r.n for r in case.recordings)
     if rows == whole <= MOST_ROWS and hidden_s == 0.0:
         return case, []
     coarse_s = hidden_s or (COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0)

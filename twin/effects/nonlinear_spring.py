@@ -193,7 +193,7 @@ _STEEPER = Parameter(
 #: A jump that is looked for at another place, or a little less long, than it is may be no help at all.
 _SNAPS_AT = replace(_CENTRE, lower=0.0, starts=tuple(k / 20 for k in range(2, 19)), neutral=0.0, smooth=False)
 _TAKES = replace(_parameter("takes", "by how much more pressure it takes from then on"), lower=-4.0, upper=4.0)
-_RATE = replace(_STIFFER, name="rate", lower=-0.6, upper=1.5, starts=(0.0,), doc="excess of its rate from then on")
+_RATE = replace(_STIFFER, name="rate", upper=1.5, starts=(0.0,), doc="excess of its rate from then on", size=False)
 _WHEN = Parameter(
     name="when",
     kind="fraction",
