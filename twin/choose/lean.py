@@ -87,7 +87,8 @@ class _Leaning:
         """
         accepted, base = self.decision.accepted, self.decision.accepted.space.base.design
         own = {n for c in accepted.space.causes if c.effect is not None for n in c.effect.absorbs}
-        for name in own.intersection(accepted.space.numbers) - {n.removeprefix("parameter:") for n in accepted.names}:
+        accused = {n.removeprefix("parameter:") for n in accepted.names}
+        for name in sorted(own.intersection(accepted.space.numbers) - accused):  # in the same order every time
             before, after = nominal(base, name), nominal(accepted.plant.design, name)
             another = abs(after - before) > _ANOTHER * abs(before)
             if another and self._left(as_designed(self.decision, self.scales, but=name)):

@@ -1,0 +1,42 @@
+"""What changes with time goes on from recording to recording, in the play and in the spring."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import FloatArray
+from twin.catalog import effect
+from twin.effect import Coefficients
+from twin.kernels.in_time import as_unbroken, widening_at
+from twin.place import Place
+
+T = np.linspace(0.0, 99.0, 100)
+
+
+def coefficients(name: str, form: str, values: tuple[float, ...], place: Place | None, duration_s: float) -> FloatArray:
+    c = Coefficients(DesignModel(), duration_s, place)
+    effect(name).form(form).apply(c, values)
+    return c.valve
+
+
+@pytest.mark.parametrize(
+    ("name", "form", "values"),
+    [
+        ("friction_drift", "sudden_easing", (0.4, 0.3, 0.6, 40.0)),
+        ("friction_drift", "sudden_easing", (0.4, 0.7, 0.6, 40.0)),
+        ("nonlinear_spring", "breaks", (-0.6, 0.2, 0.3)),
+        ("nonlinear_spring", "breaks", (-0.6, 0.2, 0.7)),
+    ],
+)
+def test_two_halves_are_the_whole(name: str, form: str, values: tuple[float, ...]) -> None:
+    """Before and after the change: a second recording has what the first has left of it."""
+    whole = coefficients(name, form, values, None, 200.0)
+    times = np.concatenate([T, 100.0 + T])
+    halves = [coefficients(name, form, values, Place(k, 2, before_s=100.0 * k, all_s=200.0), 100.0) for k in range(2)]
+    for law in (widening_at, lambda t, c: as_unbroken(np.full(t.size, 8.0), t, c)):
+        together = np.concatenate([law(T, half) for half in halves])
+        assert together == pytest.approx(law(times, whole), abs=1e-12)
+    changed = (widening_at(times, whole) != 0.0) | (as_unbroken(np.full(200, 8.0), times, whole) != 8.0)
+    assert changed.any() and not changed.all()
