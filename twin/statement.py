@@ -11,6 +11,8 @@ from twin.diagnosis import Cause, Diagnosis, Estimate, Gap
 
 #: Up to so many times the noise an error is "as well as the noise allows".
 _LIKE = 1.3
+#: Of its interval: below that a size is 0.
+_NOTHING = 1e-4
 #: The names of numbers of which a curve has many.
 _KNOT = re.compile(r"_\d+$")
 
@@ -41,7 +43,7 @@ def statement(diagnosis: Diagnosis) -> str:
         )
     names = " and ".join(_named(cause) for cause in diagnosis.causes)
     closed = g.reducible_closed
-    share = f", which closes {100.0 * closed.value:.3g} % of what noise does not account for" if closed else ""
+    share = f", which closes {_share(closed.value)} of what noise does not account for" if closed else ""
     off = "A design number is off" if len(diagnosis.causes) == 1 else "Design numbers are off"
     what = off if diagnosis.verdict == "parameter" else "The design leaves something out"
     if closed is None and diagnosis.causes and all(c.stage == "ep" for c in diagnosis.causes):
@@ -51,6 +53,11 @@ def statement(diagnosis: Diagnosis) -> str:
         )
     them = "it" if len(diagnosis.causes) == 1 else "them"
     return f"{what}: {names}. {_error(g, them)} (noise {g.noise_floor:.2g} %){share}."
+
+
+def _share(closed: float) -> str:
+    """Of the gap; where less is left than passed for noise, that was not all noise."""
+    return "all" if closed >= 1.0 else f"{100.0 * closed:.3g} %"
 
 
 def _error(g: Gap, them: str) -> str:
@@ -91,7 +98,9 @@ def _named(cause: Cause) -> str:
 
 
 def _sized(one: Estimate) -> str:
-    return f"{one.value:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
+    """The number with its unit; 0 for what is nothing beside its own doubt."""
+    nothing = abs(one.value) < _NOTHING * (one.ci95[1] - one.ci95[0])
+    return f"{0.0 if nothing else one.value:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
 
 
 def _sizes(cause: Cause) -> Mapping[str, Estimate]:

@@ -52,3 +52,18 @@ def test_an_error_does_not_fall_to_more() -> None:
     more = Diagnosis("effect", "", (named,), (), replace(GAP, before=0.93, after=1.1))
     assert "falls" in said(named)
     assert "falls" not in statement(more) and "1.1 % of travel with it and 0.93 % without" in statement(more)
+
+
+def test_less_than_what_passed_for_noise_closes_all() -> None:
+    """More than 100 % of what noise does not account for is no share of anything."""
+    closed = Estimate(1.55, (1.3, 1.9), "1")
+    better = Diagnosis("effect", "", (one("creep", "one_tail", share=0.2),), (), replace(GAP, reducible_closed=closed))
+    assert "closes all of what noise" in statement(better)
+    some = replace(GAP, reducible_closed=replace(closed, value=0.876))
+    assert "closes 87.6 % of what noise" in statement(replace(better, gap=some))
+
+
+def test_nothing_beside_its_doubt_is_nothing() -> None:
+    sizes = {"up": Estimate(2.7e-25, (0.0, 0.07), "s/in"), "down": Estimate(0.26, (0.24, 0.27), "s/in")}
+    limited = Cause("ep_rate_limit", "ep", 0.97, None, sizes, None)
+    assert "up 0 s/in, down 0.26 s/in" in said(limited)

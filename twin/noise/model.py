@@ -10,6 +10,7 @@ from typing import Literal
 import numpy as np
 
 from logs.recording import FloatArray, Recording
+from twin.noise.driven import undriven
 from twin.noise.fast import fast_memory
 from twin.noise.lattice import lattice_step
 from twin.noise.repeats import RepeatPair, find_repeats
@@ -22,7 +23,15 @@ from twin.noise.robust import (
     robust_sigma,
     whiten,
 )
-from twin.noise.still import even_windows, given_back, held_windows, still_pieces, straight_windows
+from twin.noise.still import (
+    even_windows,
+    given_back,
+    held_windows,
+    pieces_of,
+    still_pieces,
+    still_rows,
+    straight_windows,
+)
 
 Source = Literal["repeats", "still", "straight", "high_frequency", "none"]
 
@@ -109,7 +118,7 @@ def _signal(name: str, recordings: Sequence[Recording], pairs: Sequence[RepeatPa
         "still": _pieces(name, known, "held"),
     }
     if name == "position" and _rows(sources["still"]) < _LEAST:
-        sources["still"] = _pieces(name, known, "any")
+        sources["still"] = _resting_pieces(known)
     sources["straight"] = _pieces(name, known, "straight")
     by_source = {str(key): robust_sigma(np.concatenate(p)) for key, p in sources.items() if _rows(p)}
     fast = [fast_memory(getattr(r, name)) for r in known]
@@ -149,16 +158,20 @@ def _resting(by_source: Mapping[str, float]) -> float | None:
     return by_source.get("still", by_source.get("straight"))
 
 
-def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "any", "straight"]) -> list[FloatArray]:
-    """Residuals of one signal where the command is held, where the signal rests, or where the command is even."""
+def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "straight"]) -> list[FloatArray]:
+    """Residuals of one signal where the command is held, or where it is even."""
     pieces: list[FloatArray] = []
     for r in recordings:
-        if kind == "any":
-            starts = even_windows(r.n, r.period_s)
-        else:
-            starts = (held_windows if kind == "held" else straight_windows)(r.time_s, r.command)
+        starts = (held_windows if kind == "held" else straight_windows)(r.time_s, r.command)
         pieces += still_pieces(getattr(r, name), r.period_s, starts, still=kind != "straight")
     return pieces
+
+
+def _resting_pieces(recordings: Sequence[Recording]) -> list[FloatArray]:
+    """Residuals of the position where it rests under any command, as a stem may in its deadband."""
+    rows = [(r, still_rows(r.position, r.period_s, even_windows(r.n, r.period_s))) for r in recordings]
+    pieces = [piece for r, some in rows for piece in pieces_of(r.position, some)]
+    return undriven(pieces, [(r, one) for r, some in rows for one in some])
 
 
 def _measured(

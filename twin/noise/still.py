@@ -72,12 +72,16 @@ def still_pieces(signal: FloatArray, period_s: float, starts: IntArray, still: b
     A window is still when its parabola moves by no more than 3 sigma of the window's residual. Unless `still` is asked
     for, it may move, and windows much louder than the quiet ones are left out instead.
     """
+    return pieces_of(signal, still_rows(signal, period_s, starts, still))
+
+
+def still_rows(signal: FloatArray, period_s: float, starts: IntArray, still: bool = True) -> list[tuple[int, int]]:
+    """The rows [a, b) of the stretches of `still_pieces`."""
     if starts.size == 0:
         return []
     width = window_rows(period_s)
     fast = fast_sigma(signal)
-    calm = _without_outliers(signal, 6.0 * fast)
-    windows = calm[starts[:, None] + np.arange(width)]
+    windows = _without_outliers(signal, 6.0 * fast)[starts[:, None] + np.arange(width)]
     good = _enough(np.isfinite(windows))
     starts, windows = starts[good], windows[good]
     fitted, spread = _about_parabolas(windows)
@@ -87,7 +91,13 @@ def still_pieces(signal: FloatArray, period_s: float, starts: IntArray, still: b
     elif good.any():
         good &= spread <= _PLAIN * float(np.quantile(spread[good], 0.3))
     longest = max(1, round(_STRETCH_S / (width * period_s)))
-    return [_detrended(signal[a:b], calm[a:b]) for a, b in _joined(starts[good], width, longest)]
+    return _joined(starts[good], width, longest)
+
+
+def pieces_of(signal: FloatArray, rows: Sequence[tuple[int, int]]) -> list[FloatArray]:
+    """The residuals of these rows [a, b) of a signal about a parabola each."""
+    calm = _without_outliers(signal, 6.0 * fast_sigma(signal))
+    return [_detrended(signal[a:b], calm[a:b]) for a, b in rows]
 
 
 def given_back(rho: FloatArray, sizes: Sequence[int]) -> tuple[FloatArray, float]:
