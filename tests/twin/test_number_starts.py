@@ -62,3 +62,19 @@ def test_a_stop_that_few_levels_pass_is_found(missing: float) -> None:
     found = fit(channel, space, starts_of(space, (), channel.recordings), rounds=6)
     assert found.values()[-1] == pytest.approx(missing, abs=2e-3)
     assert found.mse < 1.1
+
+
+def test_a_deadband_as_wide_as_most_of_the_commands_is_found() -> None:
+    """A design that stands still may be off by less than any that moves too much: no way leads on from there."""
+    design = replace(DesignModel(), a1=8.0, a2=8.0)
+    true = replace(design, a1=8.108, a2=7.892)
+    levels = 10.0 + 0.12 * np.array([1.0, -1.0, 0.9, -0.9, 1.0, -1.0, 0.95, -0.95])
+    whole = trial_of(Plant(true), np.repeat(levels, 150))[0].recording
+    later = slice(300, None)  # it came to its first level from elsewhere
+    rows = {name: getattr(whole, name)[later] for name in ("time_s", "command", "position")}
+    channel = chain_channel(make_case([replace(whole, **rows, pressure=None)], design).trials, SIGMA)
+    space = make_space(Plant(design), (Cause("parameter:deadband"),), ["deadband"], Scales())
+    starts = starts_of(space, (), channel.recordings)
+    still = min(starts, key=lambda z: float(np.sum(np.square(channel.residuals(space.plant(z))))))
+    assert channel.stands(space.plant(still))
+    assert fit(channel, space, starts, rounds=6).mse < 1.5

@@ -18,6 +18,9 @@ from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_response
 from twin.slots import S_CORE, V_REMEMBERS
 
+#: Of what the readings go through: a prediction that goes through less stays put.
+_PUT = 0.02
+
 Predict = Callable[[Plant, Trial], FloatArray]
 
 
@@ -90,6 +93,16 @@ class Channel:
         if self.half > 0.0:
             error -= np.clip(error, -self.half, self.half)
         return np.where(self.use, error / self.sigma, 0.0)
+
+    def stands(self, plant: Plant) -> bool:
+        """Whether the prediction stays put in every trial although the readings go somewhere."""
+        ends = np.cumsum([trial.recording.n for trial in self.trials])[:-1]
+        trials = zip(np.split(self.measured, ends), np.split(self.use, ends), self.trials, strict=True)
+        return all(
+            np.ptp(self.predict(plant, trial)[use]) < _PUT * np.ptp(np.percentile(read[use], (1.0, 99.0)))
+            for read, use, trial in trials
+            if use.any()
+        )
 
     @property
     def rows(self) -> int:

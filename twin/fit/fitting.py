@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 
 import numpy as np
 
 from logs.recording import FloatArray, Recording
 from twin.fit.channel import Channel
-from twin.fit.least_squares import Minimum, descend, minimise
+from twin.fit.least_squares import Minimum, Residuals, descend, minimise
 from twin.fit.space import Space, cause_starts
 from twin.plant import Plant
 
@@ -90,7 +91,8 @@ def fit(
         held = [] if anchor is None else [(z - anchor[0]) / anchor[1]]
         return np.concatenate([r if root is None else r * root, (z - centre) / spreads, *held])
 
-    ranked = _rank(residuals, starts, refine) if len(starts) > refine else list(starts)
+    ranked = _ranked(residuals, starts)
+    ranked = [*ranked[:refine], *_in_motion(channel, space, ranked, refine)]
     rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)
     minima = []
     for start in ranked:
@@ -100,13 +102,21 @@ def fit(
     return _finished(channel, space, best, weights, sum(m.evaluations for m in minima) + len(starts))
 
 
-def _rank(residuals: object, starts: Sequence[FloatArray], keep: int) -> list[FloatArray]:
-    assert callable(residuals)
-    costs = []
-    for start in starts:
-        r = residuals(start)
-        costs.append(float(r @ r))
-    return [starts[i] for i in np.argsort(costs)[:keep]]
+def _ranked(residuals: Residuals, starts: Sequence[FloatArray]) -> list[FloatArray]:
+    """The starts, best first; a single one needs no look."""
+    if len(starts) == 1:
+        return list(starts)
+    return [starts[i] for i in np.argsort([float(r @ r) for r in map(residuals, starts)])]
+
+
+def _in_motion(channel: Channel, space: Space, ranked: Sequence[FloatArray], refine: int) -> list[FloatArray]:
+    """The best start in which something moves, where it does in none of the best `refine`.
+
+    A model that never moves may well be off by less than one that moves by too much, and no way leads on from there.
+    """
+    if len(ranked) <= refine or not all(channel.stands(space.plant(z)) for z in ranked[:refine]):
+        return []
+    return list(islice((z for z in ranked[refine:] if not channel.stands(space.plant(z))), 1))
 
 
 def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray | None, used: int) -> Fit:
