@@ -36,6 +36,7 @@ from twin.noise.model import estimate_noise
 from twin.partial import Interrupted, Known, known_so_far
 from twin.pieces import cut_at_holes
 from twin.plant import Inserted, Plant, effect_tables
+from twin.recorder import recorder_note
 from twin.refresh import new_only, refreshed_together
 from twin.repeatable import differ_for_a_cause, leaves_what_rests
 from twin.rounding import lacking_codes, rounding_down
@@ -216,6 +217,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
     known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing), *heavy_tail(sensing)]
+    known.notes += [recorder_note(recordings, sensing.step)] if sensing.recorded else []
     return case, look, sensing, tuple(late)
 
 

@@ -23,6 +23,7 @@ from twin.events.tails import together
 from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.plant import Inserted, Plant
+from twin.recorder import rounded_by_recorder
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
@@ -51,7 +52,8 @@ class Sensing:
     """Events of all recordings. `accepted`: estimates of every accepted event effect; `step`: the resolution.
 
     `uneven`: by how much more codes that never occur make the reading err. `band`: by how much a reading that is
-    reported on change has to change; 0 for one that is polled.
+    reported on change has to change; 0 for one that is polled. `recorded`: whether the recorder made the step, and not
+    the gauge.
     """
 
     events: tuple[Events, ...]
@@ -59,6 +61,7 @@ class Sensing:
     step: float
     uneven: float = 1.0
     band: float = 0.0
+    recorded: bool = False
 
     @property
     def coarseness(self) -> float:
@@ -83,7 +86,8 @@ class Sensing:
     @property
     def sharp(self) -> bool:
         """Whether the reading is in coarse steps, all of its codes occur, and it is new in every row."""
-        return "sensor_quantization" in self.accepted and self.uneven < 1.0 + 1e-9 and not self.held
+        in_steps = "sensor_quantization" in self.accepted or self.recorded
+        return in_steps and self.uneven < 1.0 + 1e-9 and not self.held
 
     @property
     def held(self) -> bool:
@@ -118,12 +122,15 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
         return Sensing(events, accepted, 0.0, band=band)
     quantization = _strongest(events, "sensor_quantization")
     step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
-    if quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step)):
+    in_steps = quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step))
+    recorded = in_steps and rounded_by_recorder(recordings, step, travel)
+    if in_steps and not recorded:
         accepted["sensor_quantization"] = dict(quantization.estimates)
     stale = _strongest(events, "stale_samples")
     if stale.found and stale.log_likelihood_ratio > _HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
-    return Sensing(events, accepted, step, _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0)
+    uneven = _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0
+    return Sensing(events, accepted, step, uneven, recorded=recorded)
 
 
 def _as_estimated(name: str, estimates: Mapping[str, Estimate]) -> Inserted:
