@@ -184,6 +184,10 @@ def test_a_guess_beside_what_is_sure_is_not_spoken() -> None:
     assert [d.names for d in spoken((guess,), Weights(), True)] == [()]
     assert spoken((guess,), Weights(), False) == (guess,)  # nothing is sure: whether it is upheld is decided later
     assert spoken((sure,), Weights(), True) == (sure,)
+    large = findings_of(fits, 400.0)
+    plain = replace(decide(large, RULES), accepted=large.fits[0], explained=True, rest=0.0)
+    assert [d.names for d in spoken((sure, plain), Weights(), True)] == [("creep",), plain.names]
+    assert spoken((guess, plain), Weights(), False) == (guess, plain)  # a guess makes nothing sure
     little = findings_of({("ep_calibration",): (1.0, 1000.0)}, 1.6)
     slight = replace(decide(little, RULES), accepted=little.fits[0], explained=True, rest=0.0)
     assert [d.names for d in spoken((slight, guess), Weights(), False)] == [(), guess.names]

@@ -26,6 +26,8 @@ from twin.fit.fitting import Fit
 LIKELY, BOTH = 0.45, 0.85
 #: Mean squared residual of the design, noise = 1, up to which a signal passes for healthy: 1.3 times the noise.
 SLIGHT = 1.69
+#: Times the noise: a gap as large is no small rest, and an answer that is silent about it is none.
+_PLAIN = 10.0
 
 
 def belief(name: str, probability: Mapping[str, float], here: Collection[str] = ()) -> float:
@@ -102,11 +104,12 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
     """The decisions without what is a guess, or about hardly anything, on a channel beside what is sure.
 
     `seen`: the readings themselves showed a cause. Beside what is sure a small rest may fit half of the catalogue
-    equally well; naming one of them would be wrong more often than right. And no machine is its design to the last
-    percent: where a signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the
-    stem so far that the position would not. It makes no answer either of a guess about a clear gap behind it. And a
-    pressure that passes for healthy and resembles something from outside of the vocabulary wanders a little, and so
-    does one that nobody measured, where the stem passes for healthy.
+    equally well; naming one of them would be wrong more often than right. Not where the rest is ten times the noise: a
+    guess, with its set, says more of that than nothing. And no machine is its design to the last percent: where a
+    signal alone would pass for healthy, what explains the rest of it is no fault, unless it moves the stem so far that
+    the position would not. It makes no answer either of a guess about a clear gap behind it. And a pressure that passes
+    for healthy and resembles something from outside of the vocabulary wanders a little, and so does one that nobody
+    measured, where the stem passes for healthy.
     """
     guesses = [_guess(d, weights) for d in decisions]
     slight = [_slight(d) and not _reaches(d, decisions) for d in decisions]
@@ -114,7 +117,8 @@ def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple
     clear = seen or any(gaps)
     sure = seen or any(gap and not guess for gap, guess in zip(gaps, guesses, strict=True))
     vague = [little and _wanders(d) for d, little in zip(decisions, slight, strict=True)]
-    mute = [(sure and g) or (clear and s) or v for g, s, v in zip(guesses, slight, vague, strict=True)]
+    small = [guess and not _plain(d) for d, guess in zip(decisions, guesses, strict=True)]
+    mute = [(sure and g) or (clear and s) or v for g, s, v in zip(small, slight, vague, strict=True)]
     return tuple(silent(d) if one else d for d, one in zip(decisions, mute, strict=True))
 
 
@@ -127,6 +131,11 @@ def silent(decision: Decision) -> Decision:
 def _slight(decision: Decision) -> bool:
     """Whether the design alone leaves little more than the noise on this channel."""
     return bool(decision.names) and decision.findings.none.mse < SLIGHT * decision.floor
+
+
+def _plain(decision: Decision) -> bool:
+    """Whether the design alone leaves so much on this channel that nobody could overlook it."""
+    return decision.findings.none.mse > _PLAIN**2 * decision.floor
 
 
 def _wanders(decision: Decision) -> bool:
