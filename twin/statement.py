@@ -37,10 +37,7 @@ def statement(diagnosis: Diagnosis) -> str:
                 f"{g.before:.2g} % of travel (noise {g.noise_floor:.2g} %). None of the known effects accounts for it"
                 f"{_looks_like(diagnosis)}."
             )
-        return (
-            f"Unexplained: the design is off by {g.before:.2g} % of travel ({g.retuned:.2g} % re-tuned, noise "
-            f"{g.noise_floor:.2g} %), and none of the known effects accounts for it{_looks_like(diagnosis)}."
-        )
+        return f"Unexplained: {_off(g)}{_looks_like(diagnosis)}."
     names = " and ".join(_named(cause) for cause in diagnosis.causes)
     closed = g.reducible_closed
     share = f", which closes {_share(closed.value)} of what noise does not account for" if closed else ""
@@ -53,6 +50,18 @@ def statement(diagnosis: Diagnosis) -> str:
         )
     them = "it" if len(diagnosis.causes) == 1 else "them"
     return f"{what}: {names}. {_error(g, them)} (noise {g.noise_floor:.2g} %){share}."
+
+
+def _off(g: Gap) -> str:
+    """How far the design is off that nothing explains, and whether its numbers would, re-tuned all together."""
+    off = f"the design is off by {g.before:.2g} % of travel"
+    if g.retuned <= _LIKE * g.noise_floor < g.before:
+        return (
+            f"{off} (noise {g.noise_floor:.2g} %); its numbers, re-tuned all together, account for that "
+            f"({g.retuned:.2g} % left), but no one of them does, and none of the known effects"
+        )
+    noise = f"noise {g.noise_floor:.2g} %"
+    return f"{off} ({g.retuned:.2g} % re-tuned, {noise}), and none of the known effects accounts for it"
 
 
 def _share(closed: float) -> str:

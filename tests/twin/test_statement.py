@@ -67,3 +67,11 @@ def test_nothing_beside_its_doubt_is_nothing() -> None:
     sizes = {"up": Estimate(2.7e-25, (0.0, 0.07), "s/in"), "down": Estimate(0.26, (0.24, 0.27), "s/in")}
     limited = Cause("ep_rate_limit", "ep", 0.97, None, sizes, None)
     assert "up 0 s/in, down 0.26 s/in" in said(limited)
+
+
+def test_what_all_numbers_together_account_for_is_said() -> None:
+    """A plant's line through three days of a loop: nothing is at fault there, and nothing fits."""
+    gap = replace(GAP, before=0.45, retuned=0.2, after=0.2, noise_floor=0.18)
+    words = statement(Diagnosis("unexplained", "", (), (), gap))
+    assert "re-tuned all together, account for that (0.2 % left), but no one of them does" in words
+    assert "accounts for it" in statement(Diagnosis("unexplained", "", (), (), replace(gap, retuned=0.3)))
