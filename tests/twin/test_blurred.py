@@ -69,3 +69,13 @@ def test_a_digital_gauge_behind_an_analog_line_is_a_coarse_one(step_in: float, n
     assert [c.name for c in found.causes] == ["sensor_quantization"]
     assert found.causes[0].parameters["step"].value == pytest.approx(step_in, rel=0.01)
     assert any("noise that came after" in note.what for note in found.data_quality)
+
+
+def test_false_readings_beside_a_stem_at_rest_are_no_motion() -> None:
+    """Levels of a staircase lie steps apart, and a spike three rows away makes each of them look like a passage."""
+    dice, rows = np.random.default_rng(6), 12_000
+    levels = 0.05 * np.repeat(dice.integers(0, 11, 20), rows // 20)
+    false = dice.random(rows) < 0.05
+    position = levels + dice.normal(0.0, 1e-3, rows) + np.where(false, dice.uniform(0.03, 0.1, rows), 0.0)
+    record = Recording("staircase", 0.05 * np.arange(rows), levels, position)
+    assert blurred_step([record], 1e-3) == (0.0, 0.0)

@@ -16,6 +16,8 @@ from logs.recording import DataNote, FloatArray, Recording
 
 #: What moves goes so many standard deviations of the noise in `_WITHIN_S` to either side.
 _MOVES, _WITHIN_S = 8.0, 0.15
+#: So many rows further out, too.
+_FURTHER = 2
 #: A step is so many of these at least, so that every reading belongs to one; and so many steps are in what was read.
 _LEAST, _STEPS = 9.0, 12
 #: Noise below this share of what was read is none, as of a simulation.
@@ -70,12 +72,18 @@ def _refined(values: FloatArray, step: float, span: float) -> float:
 
 
 def _in_motion(recording: Recording, sigma: float) -> FloatArray:
-    """The readings of a stem that moves, without those that repeat the one before."""
+    """The readings of a stem that moves, without those that repeat the one before.
+
+    It has moved as seen from one row further out and from two, too: one false reading beside a stem at rest is no way.
+    """
     y = recording.position
     side = max(1, round(_WITHIN_S / recording.period_s))
-    if y.size <= 2 * side:
+    edge = side + _FURTHER
+    if y.size <= 2 * edge:
         return np.empty(0)
-    moves = np.abs(y[2 * side :] - y[: -2 * side]) > _MOVES * sigma  # NaN compares false
-    here = y[side:-side]
-    fresh: FloatArray = here[moves & np.isfinite(here) & (here != y[side - 1 : -side - 1])]
+    rows = np.arange(edge, y.size - edge)
+    ways = np.stack([y[rows + k] - y[rows - k] for k in range(side, edge + 1)])
+    moves = (np.abs(ways) > _MOVES * sigma).all(axis=0)  # NaN compares false
+    here = y[rows]
+    fresh: FloatArray = here[moves & np.isfinite(here) & (here != y[rows - 1])]
     return fresh
