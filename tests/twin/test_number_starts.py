@@ -78,3 +78,18 @@ def test_a_deadband_as_wide_as_most_of_the_commands_is_found() -> None:
     still = min(starts, key=lambda z: float(np.sum(np.square(channel.residuals(space.plant(z))))))
     assert channel.stands(space.plant(still))
     assert fit(channel, space, starts, rounds=6).mse < 1.5
+
+
+@pytest.mark.parametrize(("swing_psi", "period_s", "met"), [(2.2, 20.0, True), (1.5, 15.0, False)])
+def test_a_lower_rate_limit_is_found_beside_a_longer_lag(swing_psi: float, period_s: float, met: bool) -> None:
+    """The longer lag alone explains most, and beside it the design's own limit is never met; where no other is met
+    either, it stays the design's."""
+    true = replace(DesignModel(), rate_limit=0.084, tau_s=3.5)
+    phase = 2.0 * np.pi * 0.1 / period_s * np.arange(1500)
+    trial, _ = trial_of(Plant(true), 8.8 + swing_psi * np.sin(phase) + np.sin(phase / 0.31))
+    channel = position_channel([trial], SIGMA)
+    numbers = [Cause("parameter:tau"), Cause("parameter:rate_limit")]
+    space = make_space(Plant(DesignModel()), numbers, ["tau", "rate_limit"], Scales())
+    found = fit(channel, space, starts_of(space, (), channel.recordings), rounds=6)
+    assert found.mse < 1.1
+    assert found.values() == pytest.approx([3.5, 0.084 if met else DesignModel().rate_limit], rel=0.02)

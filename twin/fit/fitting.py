@@ -25,6 +25,8 @@ _FAR = {
 #: Shares of what the commands cover, by which a wider deadband is looked for, too: from one that is wider than that, in
 #: which the stem never moves, no way leads back.
 _OF_COMMANDS = (0.3, 0.7)
+#: Sum of squares, noise = 1.
+_CLEARLY = 9.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,13 +94,14 @@ def fit(
         return np.concatenate([r if root is None else r * root, (z - centre) / spreads, *held])
 
     ranked = _ranked(residuals, starts)
-    ranked = [*ranked[:refine], *_in_motion(channel, space, ranked, refine)]
+    ranked = [*ranked[:refine], *_in_motion(channel, space, ranked, refine), *_slower(space, ranked, refine)]
     rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)
     minima = []
     for start in ranked:
         z = descend(residuals, start, rough, space.lower, space.upper) if rough.size else start
         minima.append(minimise(residuals, z, space.lower, space.upper, space.steps, rounds))
-    best = min(minima, key=lambda m: m.cost)
+    # what was looked for further off has to be better by more than noise makes a number that does not matter
+    best = minima[min(range(len(minima)), key=lambda k: minima[k].cost + (_CLEARLY if k >= refine else 0.0))]
     return _finished(channel, space, best, weights, sum(m.evaluations for m in minima) + len(starts))
 
 
@@ -117,6 +120,18 @@ def _in_motion(channel: Channel, space: Space, ranked: Sequence[FloatArray], ref
     if len(ranked) <= refine or not all(channel.stands(space.plant(z)) for z in ranked[:refine]):
         return []
     return list(islice((z for z in ranked[refine:] if not channel.stands(space.plant(z))), 1))
+
+
+def _slower(space: Space, ranked: Sequence[FloatArray], refine: int) -> list[FloatArray]:
+    """The best start with a rate limit below the design's, where none of the best `refine` has one.
+
+    A limit that is never met makes no difference, so that no way leads from there to one that is.
+    """
+    if "rate_limit" not in space.numbers:
+        return []
+    at = space.numbers.index("rate_limit")
+    lower = (z for z in ranked[refine:] if z[at] < 0.0)
+    return [] if any(z[at] < 0.0 for z in ranked[:refine]) else list(islice(lower, 1))
 
 
 def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray | None, used: int) -> Fit:
