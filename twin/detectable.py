@@ -9,7 +9,7 @@ where they suffice.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -26,6 +26,7 @@ from twin.fit.numbers import nominal, reference, retuned, unit
 from twin.fit.space import make_space
 from twin.plant import Inserted, Plant
 from twin.remainder import SLIGHT
+from twin.tolerance import TOLERANCE
 from twin.upheld import EXPLAINED, HARDLY
 
 _STEPS = 5
@@ -152,8 +153,7 @@ def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
     size = reference(design, name)
 
     def shown(relative: float) -> float:
-        changed = retuned(design, {name: nominal(design, name) + relative * size})
-        return detector.shown(Plant(changed, detector.base.inserted), others)
+        return _shows(detector, name, relative, others)
 
     limit = smallest_shown(shown, _FIRST_WRONG, _WRONG)
     most, room = _WRONG, nominal(design, name) / size
@@ -162,7 +162,17 @@ def _of_number(detector: Detector, name: str, others: FloatArray) -> EffectTest:
         limit = smallest_shown(lambda relative: shown(-relative), _FIRST_WRONG, most)
     if limit > most:
         return EffectTest(f"parameter:{name}", False, "this record does not excite it", name)
+    if limit < TOLERANCE:  # within it, a number is off only where that shows clearly
+        clear = replace(detector, needed=max(detector.needed, (SLIGHT**2 - 1.0) * detector.channel.rows))
+        limit = min(TOLERANCE, smallest_shown(lambda relative: _shows(clear, name, relative, others), limit, TOLERANCE))
     return EffectTest(f"parameter:{name}", True, "", name, limit * size, unit(design, name))
+
+
+def _shows(detector: Detector, name: str, relative: float, others: FloatArray) -> float:
+    """What a design number shows that is off by a share of its reference."""
+    design = detector.base.design
+    changed = retuned(design, {name: nominal(design, name) + relative * reference(design, name)})
+    return detector.shown(Plant(changed, detector.base.inserted), others)
 
 
 def smallest_shown(shown: Callable[[float], float], first: float, largest: float) -> float:

@@ -13,7 +13,8 @@ from twin.fit.fitting import Fit
 from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause
 from twin.sensing import Sensing
 from twin.stages import StageResult
-from twin.upheld import explained_to_noise, shown_by_pressure, upheld
+from twin.tolerance import forgiven, needless_number, within_tolerance
+from twin.upheld import explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
@@ -42,7 +43,7 @@ class Hearing:
 
         Where what is behind the pressure would take with it what the pressure shows by itself, that is heard alone.
         """
-        result, judgement, parts = self._needed(result, judgement, progress)
+        result, judgement, parts = self._needed(result, judgement, progress, floor)
         upholds = self._upheld(result, judgement, parts, floor)
         shown = shown_by_pressure(result)
         behind = {c.name for c in judgement.causes} - set(shown)
@@ -55,10 +56,14 @@ class Hearing:
         return (less, alone, parts) if alone.causes else (result, upholds[1], upholds[0])
 
     def _needed(
-        self, result: StageResult, judgement: Judgement, progress: Progress
+        self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
     ) -> tuple[StageResult, Judgement, GapParts]:
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
-        while idle := idle_cause(parts, judgement, result, self.case.travel):
+        percent = 100.0 * floor / self.case.travel
+        while idle := (
+            idle_cause(parts, judgement, result, self.case.travel)
+            or needless_number(parts, judgement.causes, self._slight(judgement), percent)
+        ):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
             result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
             judgement = self.judgement(result)
@@ -76,7 +81,12 @@ class Hearing:
     def _upheld(
         self, result: StageResult, judgement: Judgement, parts: GapParts, floor: float
     ) -> tuple[GapParts, Judgement]:
-        """`upheld`, with what the result says of the channels."""
+        """`upheld`, with what the result says of the channels, and no number that is within its tolerance."""
+        if forgiven(parts, judgement.causes, self._slight(judgement), floor):
+            return nothing(parts, judgement, self.disturbed)
         measured, wandering = self.case.sigma_p is not None, result.decisions[-1].floor
         told = (measured, wandering, self.disturbed, explained_to_noise(result), shown_by_pressure(result))
         return upheld(parts, judgement, floor, self.sensing, *told, self.swings)
+
+    def _slight(self, judgement: Judgement) -> list[str]:
+        return within_tolerance(judgement.causes, self.case.base.design)

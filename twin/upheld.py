@@ -66,7 +66,7 @@ def upheld(
     # how much an unmeasured pressure wandered by itself nobody knows, but no law of the commands predicts that
     if before <= (HARDLY if apart or trace else SLIGHT) * floor or (vain and before < SLIGHT * floor):
         left = _named_only(judgement, shown)
-        return (parts, left) if left.causes and not _doubted(left, exact) else _nothing(parts, judgement, disturbed)
+        return (parts, left) if left.causes and not _doubted(left, exact) else nothing(parts, judgement, disturbed)
     if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
         return _unexplained(parts, judgement)
     return parts, judgement
@@ -94,7 +94,7 @@ def _follows_commands(causes: Collection[Cause]) -> bool:
     return not drifts and all(len(c.parameters) <= FREE for c in causes)
 
 
-def _nothing(parts: GapParts, judgement: Judgement, disturbed: bool) -> tuple[GapParts, Judgement]:
+def nothing(parts: GapParts, judgement: Judgement, disturbed: bool) -> tuple[GapParts, Judgement]:
     """No causes, and no gap but for what disturbs."""
     verdict: Verdict = "unexplained" if disturbed else "no_gap"
     return replace(parts, after=parts.before), Judgement(verdict, (), judgement.ranking, ())

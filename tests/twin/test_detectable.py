@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import twin.detectable
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.case import make_case
@@ -19,9 +20,11 @@ from twin.detectable import Detector, _nuisance, detection_limits, smallest_show
 from twin.diagnose import Settings, diagnose
 from twin.diagnosis import EffectTest
 from twin.fit.channel import chain_channel
+from twin.fit.numbers import reference
 from twin.plant import Inserted, Plant
 from twin.sensing import smallest_seen
 from twin.stages import StageResult
+from twin.tolerance import TOLERANCE
 
 
 @pytest.fixture(scope="module")
@@ -80,6 +83,23 @@ def test_what_retuning_would_hide_shows_nothing_and_a_number_does_not_hide_itsel
     tests = detection_limits([channel], case.base, case.scales, [], DecisionRules())
     [tau] = [t for t in tests if t.name == "parameter:tau"]
     assert tau.detection_limit is not None and tau.detection_limit < 0.01 * case.base.design.tau_s
+
+
+def test_within_its_tolerance_a_number_has_to_show_clearly(
+    healthy: StageResult, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case, channel = healthy.case, healthy.decisions[-1].findings.channel
+
+    def limits() -> dict[str, float]:
+        tests = detection_limits([channel], case.base, case.scales, [], DecisionRules())
+        return {t.name: t.detection_limit or np.inf for t in tests}
+
+    asked = limits()
+    monkeypatch.setattr(twin.detectable, "TOLERANCE", 0.0)
+    plain = limits()
+    tolerated = {n: TOLERANCE * reference(case.base.design, n.removeprefix("parameter:")) for n in asked}
+    assert any(plain[n] < asked[n] <= tolerated[n] * (1.0 + 1e-9) for n in asked)
+    assert all(asked[n] == plain[n] for n in asked if plain[n] > tolerated[n])
 
 
 def test_a_rate_limit_that_was_never_met_shows_when_it_is_lower() -> None:
