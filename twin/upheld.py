@@ -21,7 +21,7 @@ from twin.verdict import Judgement, verdict_of
 #: Of the error before; a model that leaves more has explained nothing.
 NO_BETTER = 0.95
 #: Of the noise; a design that misses by less has no gap.
-HARDLY = 1.1
+HARDLY = 1.15
 #: Of the noise; a design that misses by more has a gap, whatever explains it.
 DOUBTFUL = 1.6
 #: Of the noise; a pressure that is off by more has a cause, where one explains it to its noise.

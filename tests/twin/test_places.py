@@ -27,6 +27,7 @@ DRIFTS = [
     ("lvdt_drift", "linear", (4e-5,)),
     ("lvdt_drift", "warm_up", (0.01, 150.0)),
     ("lvdt_drift", "cycle", (0.004, -0.003, 210.0)),
+    ("lvdt_drift", "swing", (0.004, -0.003, 210.0)),
     ("friction_drift", "linear", (6e-4,)),
     ("friction_drift", "warm_up", (0.3, 150.0)),
     ("friction_drift", "sudden", (0.3, 0.2)),

@@ -145,6 +145,12 @@ def _cycle(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_ZERO] += there - c.sensor[S_CYCLE_COS]
 
 
+def _swing(c: Coefficients, values: Sequence[float]) -> None:
+    """About the design's zero, and not from it on: a room was as warm as on the day of calibration some other time."""
+    _cycle(c, values)
+    c.sensor[S_ZERO] -= values[0]
+
+
 def _apart(c: Coefficients, values: Sequence[float]) -> None:
     """Each recording with a zero of its own: a curve through as many of the values as go round."""
     if c.place is None:
@@ -199,7 +205,8 @@ EFFECT = Effect(
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
     equations="y = x + rate t, or x + change (1 - exp(-t / settling)), or x + change (t / 300 tau)^0.5 (root), "
-    "or x + there (1 - cos) + along sin (2 pi t / period), or x + a spline through its value at ten times, "
+    "or x + there (1 - cos) + along sin (2 pi t / period), or x - there cos + along sin (swing), "
+    "or x + a spline through its value at ten times, "
     "or x + a curve of each recording's own through up to five values (apart); a jump is no drift, only told from it",
     source="IEC 61298-3, Process measurement and control devices, part 3 (effects of influence quantities)",
     forms=(
@@ -207,6 +214,7 @@ EFFECT = Effect(
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("root", (_QUARTER,), _root),
         Form("cycle", (_THERE, _ALONG, _PERIOD), _cycle),
+        Form("swing", (_THERE, _ALONG, _PERIOD), _swing),
         Form("apart", _ZEROS, _apart, apart=KNOTS),
         Form("wander", _ZEROS, _wander, once=True),
         Form("jump", (_STEP, _WHEN), _jump, outside="the zero of the reading jumps"),
