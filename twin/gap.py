@@ -66,15 +66,17 @@ def heldout_parts(
     return GapParts(before, again, after, without, alone)
 
 
-def idle_cause(parts: GapParts, judgement: Judgement, result: StageResult, travel: float) -> str | None:
+def idle_cause(
+    parts: GapParts, judgement: Judgement, result: StageResult, travel: float, healthy: float = 0.0
+) -> str | None:
     """The cause behind the pressure without which unseen data are predicted as well as with it, if there is one.
 
-    A cause of the converter has the pressure to show for itself, which this error is not about; and one that stands
-    alone is judged by `upheld`.
+    Or as well as a healthy machine is: to an error of `healthy` percent of travel. A cause of the converter has the
+    pressure to show for itself, which this error is not about; and one that stands alone is judged by `upheld`.
     """
     behind = {name for d in result.decisions if d.findings.channel.name != "pressure" for name in d.names}
-    after = 100.0 / travel * rms(parts.after)
-    spare = [c.name for c in judgement.causes if c.name in behind and parts.without.get(c.name, np.inf) < IDLE * after]
+    enough = max(IDLE * 100.0 / travel * rms(parts.after), healthy)
+    spare = [c.name for c in judgement.causes if c.name in behind and parts.without.get(c.name, np.inf) < enough]
     if len(judgement.causes) < 2 or not spare:
         return None
     return min(spare, key=lambda name: parts.without[name])

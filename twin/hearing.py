@@ -14,7 +14,7 @@ from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.tolerance import forgiven, needless_number, within_tolerance
-from twin.upheld import explained_to_noise, nothing, shown_by_pressure, upheld
+from twin.upheld import HARDLY, explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
@@ -61,7 +61,7 @@ class Hearing:
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         percent = 100.0 * floor / self.case.travel
         while idle := (
-            idle_cause(parts, judgement, result, self.case.travel)
+            idle_cause(parts, judgement, result, self.case.travel, HARDLY * percent)
             or needless_number(parts, judgement.causes, self._slight(judgement), percent)
         ):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)

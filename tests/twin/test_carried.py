@@ -20,6 +20,7 @@ from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
 
 SPREAD = effect("distributed_hysteresis")
+LAG = effect("additional_lag")
 
 
 @pytest.mark.parametrize(("deadband_psi", "accused"), [(0.0, True), (1.4, True), (2.6, False)])
@@ -38,3 +39,17 @@ def test_a_spread_does_not_carry_a_deadband_that_the_design_has_not(deadband_psi
     after = leaning(Decision(findings, found, explained=True, gap=True, rest=0.0), Scales(), DecisionRules())
     assert after.names == (SPREAD.name, *(("parameter:deadband",) if accused else ()))
     assert after.accepted.mse < 1.2
+
+
+@pytest.mark.parametrize(("tau_s", "lag_s", "accused"), [(2.5, 0.03, True), (2.5, 0.15, False), (2.69, 0.03, False)])
+def test_a_small_second_lag_does_not_carry_a_first_one_that_is_wrong(tau_s: float, lag_s: float, accused: bool) -> None:
+    form = LAG.form("after_play")
+    trial, _ = trial_of(Plant(DesignModel(tau_s=tau_s), (Inserted(LAG.name, form, (lag_s,)),)), staircase())
+    channel = position_channel([trial], SIGMA)
+    none = fit(channel, make_space(Plant(DesignModel()), (), (), Scales()), [np.zeros(0)])
+    space = make_space(Plant(DesignModel()), (Cause(LAG.name, LAG, form),), channel.numbers, Scales())
+    found = fit(channel, space, starts_of(space), rounds=20)
+    assert found.mse < 1.2
+    findings = Findings(channel, none, none, (found,), yardstick_for([none, found], channel.use))
+    after = leaning(Decision(findings, found, explained=True, gap=True, rest=0.0), Scales(), DecisionRules())
+    assert after.names == (LAG.name, *(("parameter:tau",) if accused else ()))
