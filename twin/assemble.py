@@ -33,7 +33,6 @@ def assembled(
     parts: GapParts,
     loud: Disturbance | None,
     rules: DecisionRules,
-    seed: int,
     notes: Sequence[DataNote],
 ) -> Diagnosis:
     """Everything but what comes next: `final` is the updated model, `loud` what should repeat and does not."""
@@ -48,7 +47,7 @@ def assembled(
         statement="",
         causes=_causes(judgement, parts, final),
         ranking=ranked(result, judgement, parts.alone),
-        gap=gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, seed, doubt),
+        gap=gap(parts.before, parts.retuned, parts.after, floor, case.travel, memory, doubt),
         where=where,
         confusable=judgement.confusable,
         data_quality=(*case.notes, *notes),

@@ -21,7 +21,7 @@ from twin.noise.repeats import find_repeats
 from twin.stages import StageResult
 
 
-def gap_by_condition(result: StageResult, retuned: Fit, floor: float, seed: int) -> Gap | None:
+def gap_by_condition(result: StageResult, retuned: Fit, floor: float) -> Gap | None:
     """The gap before, re-tuned and with what `result` accepted; None for a single condition.
 
     `retuned` was fitted to the case of the `result`; `floor` is the noise of the position, in its unit.
@@ -41,7 +41,7 @@ def gap_by_condition(result: StageResult, retuned: Fit, floor: float, seed: int)
     again = predict_folds(case, case.base, [retuned], [chain], weights, folds)
     after = predict_folds(case, case.base, fits, channels, weights, folds)
     noise = whole.noise.position
-    return gap(before, again, after, floor, case.travel, noise.correlation_samples, seed, floor_doubt(noise))
+    return gap(before, again, after, floor, case.travel, noise.correlation_samples, floor_doubt(noise))
 
 
 def _condition_folds(recordings: Sequence[Recording]) -> list[int] | None:

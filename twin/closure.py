@@ -1,8 +1,7 @@
 """How much of the gap a model closes, against the noise floor, on held-out residuals.
 
-reducible_closed = 1 - (after^2 - floor^2) / (before^2 - floor^2), with RMS values. Intervals come from a moving-block
-bootstrap with blocks of at least five noise correlation times and longer than the error's own memory; before and after
-are resampled together.
+reducible_closed = 1 - (after^2 - floor^2) / (before^2 - floor^2), with RMS values. Its interval is Fieller's, with
+variances from blocks that are longer than what the error remembers (`twin/where/ratio.py`).
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.diagnosis import Gap, Share
 from twin.noise.model import SignalNoise
-from twin.where.bootstrap import block_rows, block_sums, interval, resample
+from twin.where.ratio import ratio_interval
 from twin.where.telescope import FLOOR_DOUBT
 
 NOTHING_TO_CLOSE = 1.05  # before / floor: below it the closed share is a quotient of noises
@@ -36,7 +35,6 @@ def closure(
     after: FloatArray,
     floor: float,
     correlation_samples: float = 1.0,
-    seed: int = 0,
     floor_relative_error: float = 0.0,
 ) -> Share | None:
     """The closed share of the reducible squared error with its 95 % interval; None when `before` is at the floor.
@@ -49,14 +47,11 @@ def closure(
     rows = int(known.sum())
     if rows < 2 or rms(before[known]) <= NOTHING_TO_CLOSE * floor:
         return None
-    squares = np.stack([np.square(before[known]), np.square(after[known])], axis=1)
-    block = block_rows(correlation_samples, squares.sum(axis=1))
-    means = resample(block_sums(squares, block), rows, block, seed) / rows
-    floors = floor * (1.0 + floor_relative_error * np.random.default_rng(seed + 1).standard_normal(len(means)))
-    reducible = means[:, 0] - floors**2
-    with np.errstate(divide="ignore", invalid="ignore"):
-        replicates = np.where(reducible > 0, 1.0 - (means[:, 1] - floors**2) / reducible, np.nan)
-    return Share(_closed(rms(before[known]), rms(after[known]), floor), interval(replicates))
+    reducible = np.square(before[known]) - floor**2
+    gained = np.square(before[known]) - np.square(after[known])
+    doubt = rows * 2.0 * floor**2 * floor_relative_error  # the floor is off in all rows alike, and only in `reducible`
+    ends = ratio_interval(gained, reducible, correlation_samples, doubt)
+    return Share(_closed(rms(before[known]), rms(after[known]), floor), ends)
 
 
 def gap(
@@ -66,7 +61,6 @@ def gap(
     floor: float,
     travel: float,
     correlation_samples: float = 1.0,
-    seed: int = 0,
     floor_relative_error: float = FLOOR_DOUBT,
 ) -> Gap:
     """The held-out numbers of a diagnosis in percent of travel; residuals, floor and travel share one unit.
@@ -82,7 +76,7 @@ def gap(
         retuned=percent * rms(retuned),
         after=percent * rms(after),
         noise_floor=percent * floor,
-        reducible_closed=closure(before, after, floor, correlation_samples, seed, floor_relative_error),
+        reducible_closed=closure(before, after, floor, correlation_samples, floor_relative_error),
     )
 
 

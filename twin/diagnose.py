@@ -67,7 +67,6 @@ class Settings:
     search: SearchRules = field(default_factory=SearchRules)
     rules: DecisionRules = field(default_factory=DecisionRules)
     weights: Weights = field(default_factory=Weights)
-    seed: int = 0
     margin: Margin = field(default_factory=Margin)
     doubt: float = Scales().doubt
 
@@ -106,7 +105,7 @@ def diagnose(
     try:
         return _diagnosed(known, settings, known.told(progress))
     except KeyboardInterrupt as stop:
-        so_far = known_so_far(known, settings.weights, settings.seed)
+        so_far = known_so_far(known, settings.weights)
         raise (Interrupted(so_far) if so_far else stop) from stop
 
 
@@ -117,7 +116,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
-    where = whereabouts(case, everything.trials, settings.seed)
+    where = whereabouts(case, everything.trials)
     itself = unrest(case, everything, settings.margin.position)
     known.notes += [*itself.notes(case), *([gauge_note(case, result.denied)] if result.astray else [])]
     case = itself.heard(case)
@@ -131,14 +130,12 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     if judgement.verdict != "no_gap":
         known.notes += tied_note([c.name for c in judgement.causes], case.base)
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
-    where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes], settings.seed))
+    where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
     known.notes += moved_numbers(case.base.design, final.design, [c.name for c in judgement.causes])
-    diagnosis = assembled(
-        case, result, judgement, final, where, parts, itself.loud, settings.rules, settings.seed, known.notes
-    )
+    diagnosis = assembled(case, result, judgement, final, where, parts, itself.loud, settings.rules, known.notes)
     floor = diagnosis.gap.noise_floor * case.travel / 100.0
-    apart = gap_by_condition(result, retuned, floor, settings.seed) if judgement.causes else None
+    apart = gap_by_condition(result, retuned, floor) if judgement.causes else None
     proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
     loop = closed_loop(known.recordings, final)
     plants = (case.base, retuned.plant, final)

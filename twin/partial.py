@@ -80,7 +80,7 @@ class Known:
         return f"{self.what} ({100.0 * self.share:.0f} %)"
 
 
-def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
+def known_so_far(known: Known, weights: Weights) -> Diagnosis | None:
     """The part of the diagnosis that is sure; None where the records cannot carry one.
 
     Without a judgement the verdict is "unexplained": no cause had been decided on. The ranking is provisional then.
@@ -89,14 +89,14 @@ def known_so_far(known: Known, weights: Weights, seed: int) -> Diagnosis | None:
         case = known.case or _plain_case(known)
     except BadInput:
         return None
-    numbers = _gap(case, seed)
+    numbers = _gap(case)
     diagnosis = Diagnosis(
         verdict="unexplained",
         statement="",
         causes=(),
         ranking=_provisional(known.searches, weights),
         gap=numbers,
-        where=whereabouts(case, driven_about(case.base, case), seed),
+        where=whereabouts(case, driven_about(case.base, case)),
         data_quality=(*case.notes, *known.notes, _cut_short(known)),
         residual_signature={"interrupted_at": known.stage},
         structure=tuple(describe(case.signals)),
@@ -129,13 +129,13 @@ def _plain_case(known: Known) -> Case:
     return make_case(known.recordings, known.plant.design, known.plant.inserted, noise=noise)
 
 
-def _gap(case: Case, seed: int) -> Gap:
+def _gap(case: Case) -> Gap:
     """The gap of the design; nothing was fitted, so every row is unseen."""
     rows = [np.where(t.use_y, t.recording.position - predict_reading(case.base, t), np.nan) for t in case.trials]
     error = np.concatenate(rows)
     nothing = np.full(error.size, np.nan)
     memory = case.noise.position.correlation_samples
-    return gap(error, nothing, nothing, case.sigma_y, case.travel, memory, seed)
+    return gap(error, nothing, nothing, case.sigma_y, case.travel, memory)
 
 
 def _provisional(searches: list[Searcher], weights: Weights) -> tuple[Ranked, ...]:

@@ -21,7 +21,7 @@ from twin.where.telescope import shares_of
 _STAGES = ("ep", "actuator", "sensor")
 
 
-def whereabouts(case: Case, trials: Sequence[Trial], seed: int) -> Where:
+def whereabouts(case: Case, trials: Sequence[Trial]) -> Where:
     """The where-map of the design's error as the signals of `trials` alone have it; `attributed` stays open."""
     pieces = []
     for trial in trials:
@@ -37,10 +37,10 @@ def whereabouts(case: Case, trials: Sequence[Trial], seed: int) -> Where:
                 use=trial.use_y,
             )
         )
-    return where_map(pieces, case.noise.position, case.travel, seed)
+    return where_map(pieces, case.noise.position, case.travel)
 
 
-def attributed(case: Case, result: StageResult, named: Collection[str], seed: int) -> dict[str, Share] | None:
+def attributed(case: Case, result: StageResult, named: Collection[str]) -> dict[str, Share] | None:
     """Shares of the explained error per stage, with the causes that the final verdict has `named`; None without any.
 
     Causes are inserted along the chain, and each stage gets what it changed. A stage without a named cause gets
@@ -55,7 +55,7 @@ def attributed(case: Case, result: StageResult, named: Collection[str], seed: in
     use = np.concatenate([t.use_y for t in case.trials])
     parts = np.stack([(b - a)[use] for a, b in pairwise(steps)], axis=1)
     explained = parts.sum(axis=1)
-    return shares_of(parts * explained[:, None], list(_STAGES), 0.0, seed=seed)
+    return shares_of(parts * explained[:, None], list(_STAGES), 0.0)
 
 
 def _up_to(case: Case, fits: Sequence[Fit], guilty: Sequence[str], last: str) -> Plant:

@@ -92,13 +92,11 @@ def command(
         if active:
             outcome = _pursued(recordings, golden, design, out, budget_minutes, bench)
         else:
-            outcome = _diagnosed(recordings, golden, design, out, bench["seed"])
+            outcome = _diagnosed(recordings, golden, design, out)
     _print(outcome, out, as_json)
 
 
-def _diagnosed(
-    recordings: Sequence[Recording], golden: Sequence[Recording], design: Path | None, out: Path, seed: int
-) -> Outcome:
+def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], design: Path | None, out: Path) -> Outcome:
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
     from app.recordings import design_for
@@ -116,7 +114,7 @@ def _diagnosed(
     try:
         with diagnosis_progress() as progress:
             identified = origin == "identified from the record"
-            settings = Settings(seed=seed, margin=margin)
+            settings = Settings(margin=margin)
             settings = replace(settings, doubt=_IDENTIFIED) if identified else settings
             outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
             if identified and _accuses_numbers(outcome):
@@ -193,7 +191,7 @@ def _pursued(
             first,
             budget_minutes,
             run,
-            lambda known: _diagnosed(known, golden, design, out, bench["seed"]),
+            lambda known: _diagnosed(known, golden, design, out),
             tell,
         )
     document = {"why": pursuit.why, "rounds": [asdict(one) for one in pursuit.rounds]}

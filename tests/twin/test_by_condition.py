@@ -40,7 +40,7 @@ def unsearched(recordings: list[Recording]) -> StageResult:
 
 
 def apart(result: StageResult) -> Gap | None:
-    return gap_by_condition(result, retuned_fit(result.case), FLOOR_IN, 0)
+    return gap_by_condition(result, retuned_fit(result.case), FLOOR_IN)
 
 
 @pytest.fixture(scope="module")
@@ -62,7 +62,7 @@ def test_a_floor_with_motion_in_it_is_as_doubtful_here_as_elsewhere(creeping: St
     def width(source: str) -> float:
         noise = creeping.case.noise
         case = replace(creeping.case, noise=replace(noise, position=replace(noise.position, source=source)))
-        found = gap_by_condition(replace(creeping, case=case), retuned_fit(case), 20.0 * FLOOR_IN, 0)
+        found = gap_by_condition(replace(creeping, case=case), retuned_fit(case), 20.0 * FLOOR_IN)
         assert found is not None and found.reducible_closed is not None
         return float(np.ptp(found.reducible_closed.ci95))
 

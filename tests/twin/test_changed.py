@@ -53,7 +53,7 @@ def test_what_grew_is_named_with_the_whole_of_its_size(slow: Recording) -> None:
 @pytest.mark.thorough
 def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
-    found = attributed(result.case, result, ["sensor_lag"], 1)
+    found = attributed(result.case, result, ["sensor_lag"])
     assert found is not None
     shares = {stage: share.value for stage, share in found.items()}
     # what re-tuning moved before the sensor is no cause, and no share
@@ -65,7 +65,7 @@ def test_the_error_of_what_grew_is_put_down_to_its_own_stage(slow: Recording) ->
 def test_nothing_is_attributed_to_a_cause_that_was_taken_back(slow: Recording) -> None:
     result, _ = judged(slow, worn(0.2))
     assert result.causes == ("sensor_lag",)
-    assert attributed(result.case, result, [], 1) is None
+    assert attributed(result.case, result, []) is None
 
 
 @pytest.mark.thorough

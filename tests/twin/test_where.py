@@ -8,7 +8,6 @@ from scipy.ndimage import maximum_filter1d
 
 from tests.twin.toy_valve import TRAVEL, Toy, staircase
 from twin.noise.model import SignalNoise
-from twin.where.bootstrap import block_rows, block_sums, interval, resample
 from twin.where.frequency import frequency_shares
 from twin.where.map import WherePiece, where_map
 from twin.where.regime import DIRECTIONS, REGIMES, classify
@@ -167,15 +166,3 @@ def test_smoothed_pressure_does_not_ratchet_the_play() -> None:
     raw = Toy().pressure(COMMAND, DT) + 0.3 * np.random.default_rng(9).standard_normal(COMMAND.size)
     raw_error = np.sqrt(np.mean((Toy().position(raw, DT) - clean) ** 2))
     assert np.sqrt(np.mean((noisy.from_pressure - clean) ** 2)) < 0.25 * raw_error
-
-
-def test_bootstrap_interval_covers_a_correlated_mean() -> None:
-    rng = np.random.default_rng(6)
-    hits = 0
-    for _ in range(100):
-        shock = rng.standard_normal(1200)
-        series = np.convolve(shock, np.ones(8) / 8)[:1200]  # correlation time 8 samples, true mean 0
-        block = block_rows(8.0, series)
-        low, high = interval(resample(block_sums(series[:, None], block), series.size, block)[:, 0])
-        hits += low <= 0.0 <= high
-    assert 88 <= hits <= 99

@@ -23,7 +23,6 @@ def frequency_shares(
     pieces: Sequence[tuple[FloatArray, FloatArray]],
     noise_sigma: float,
     noise_ar: tuple[float, ...] = (),
-    seed: int = 0,
 ) -> tuple[Bin, ...] | None:
     """Shares per frequency band [Hz], summing to 1; None below eight segments or without reducible error.
 
@@ -47,7 +46,7 @@ def frequency_shares(
     sums = np.stack([power[:, band == b].sum(axis=1) for b in range(edges.size - 1)], axis=1)
     # a segment's row is a mean square: the total counts as many rows as there are segments
     least = least_excess(sum(sizes), noise_sigma, 1.0) * sums.shape[0] / sum(sizes)
-    shares = shares_of(sums, [str(b) for b in range(edges.size - 1)], least, seed=seed, signed=False)
+    shares = shares_of(sums, [str(b) for b in range(edges.size - 1)], least, signed=False)
     if shares is None:
         return None
     return tuple(Bin(float(edges[b]), float(edges[b + 1]), shares[str(b)]) for b in range(edges.size - 1))

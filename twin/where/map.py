@@ -39,7 +39,7 @@ class WherePiece:
         return error if self.use is None else np.where(self.use, error, np.nan)
 
 
-def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float, seed: int = 0) -> Where:
+def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float) -> Where:
     """Shares of the reducible squared error of all pieces together; groups that cannot be known are None.
 
     Time in the map runs through the pieces one after the other.
@@ -50,7 +50,7 @@ def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float, s
     if all(piece.from_pressure is not None for piece in pieces):
         reading, full = _joined(pieces, lambda p: p.reading), _joined(pieces, lambda p: p.full)
         terms = two_stage_terms(reading, full, _joined(pieces, lambda p: _some(p.from_pressure)))
-        stage = stage_shares(error, terms, sigma, "actuator_or_sensor", memory, seed)
+        stage = stage_shares(error, terms, sigma, "actuator_or_sensor", memory)
     classes = [_classes(piece, noise, travel) for piece in pieces]
     direction = np.concatenate([c.direction for c in classes])
     regime = np.concatenate([c.regime for c in classes])
@@ -58,16 +58,16 @@ def where_map(pieces: Sequence[WherePiece], noise: SignalNoise, travel: float, s
     time = _run_time(pieces)
 
     def binned(quantity: FloatArray, edges: FloatArray) -> tuple[Bin, ...] | None:
-        return bin_shares(error, quantity, edges, sigma, memory, seed)
+        return bin_shares(error, quantity, edges, sigma, memory)
 
     return Where(
         stage=stage,
-        direction=class_shares(error, direction, DIRECTIONS, sigma, memory, seed),
-        regime=class_shares(error, regime, REGIMES, sigma, memory, seed),
+        direction=class_shares(error, direction, DIRECTIONS, sigma, memory),
+        regime=class_shares(error, regime, REGIMES, sigma, memory),
         position=binned(_joined(pieces, lambda p: p.reading), even_edges(np.zeros(1), 10, 0.0, travel)),
         pressure=binned(pressure, even_edges(pressure)),
         time=binned(time, even_edges(time)),
-        frequency=frequency_shares([(p.time_s, p.error()) for p in pieces], sigma, noise.ar, seed),
+        frequency=frequency_shares([(p.time_s, p.error()) for p in pieces], sigma, noise.ar),
     )
 
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.diagnosis import Share
-from twin.where.bootstrap import block_rows, block_sums, interval, resample
+from twin.where.ratio import ratio_interval
 
 #: Standard error of a floor over the floor, where it was measured at rest or between repeats.
 FLOOR_DOUBT = 0.05
@@ -31,7 +31,6 @@ def stage_shares(
     noise_sigma: float,
     noisy: str,
     correlation_samples: float = 1.0,
-    seed: int = 0,
 ) -> dict[str, Share] | None:
     """Shares of the reducible squared error per stage; None where the error is not above its floor.
 
@@ -49,7 +48,7 @@ def stage_shares(
         raise ValueError("the stage terms do not add to the error")
     products = stack * r[:, None]
     products[:, names.index(noisy)] -= noise_sigma**2
-    return shares_of(products, names, least_excess(r.size, noise_sigma, correlation_samples), correlation_samples, seed)
+    return shares_of(products, names, least_excess(r.size, noise_sigma, correlation_samples), correlation_samples)
 
 
 def least_excess(rows: int, noise_sigma: float, correlation_samples: float) -> float:
@@ -68,25 +67,22 @@ def shares_of(
     names: list[str],
     least: float,
     correlation_samples: float = 1.0,
-    seed: int = 0,
     signed: bool = True,
+    block: int | None = None,
 ) -> dict[str, Share] | None:
-    """Each column's share of the total of `contributions` (n, columns), with block-bootstrap intervals.
+    """Each column's share of the total of `contributions` (n, columns), with its 95 % interval.
 
     None unless the total is above `least`. Unless `signed`, columns below zero (quieter than the
-    floor) count as zero.
+    floor) count as zero. `block`: see `ratio_interval`.
     """
-    rows = contributions.shape[0]
-    if rows == 0:
-        return None
-    block = block_rows(correlation_samples, contributions.sum(axis=1))
     totals = contributions.sum(axis=0)
-    replicates = resample(block_sums(contributions, block), rows, block, seed)
-    if not totals.sum() > least:
+    if contributions.shape[0] == 0 or not totals.sum() > least:
         return None
-    if not signed:
-        totals, replicates = np.maximum(totals, 0.0), np.maximum(replicates, 0.0)
-    sums = replicates.sum(axis=1, keepdims=True)
-    replicates = np.divide(replicates, sums, out=np.full_like(replicates, np.nan), where=sums > 0)
-    shares = totals / totals.sum()
-    return {name: Share(float(shares[i]), interval(replicates[:, i])) for i, name in enumerate(names)}
+    whole = contributions.sum(axis=1) if signed else contributions[:, totals > 0.0].sum(axis=1)
+    shares = (totals if signed else np.maximum(totals, 0.0)) / whole.sum()
+    found = {}
+    for k, name in enumerate(names):
+        low, high = ratio_interval(contributions[:, k], whole, correlation_samples, block=block)
+        ends = (low, high) if signed else (min(max(low, 0.0), shares[k]), max(min(high, 1.0), shares[k]))
+        found[name] = Share(float(shares[k]), (float(ends[0]), float(ends[1])))
+    return found
