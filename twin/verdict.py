@@ -163,7 +163,7 @@ def estimates(fit: Fit, phi: float) -> dict[tuple[str, str], Estimate]:
     values = fit.values()
     # what is nearer: a supply of 12 psi is not 48 psi away from none because the bounds end at 60
     sizes = np.minimum(np.abs(values - np.array([u.centre for u in fit.space.unknowns])), np.abs(values))
-    deviations = np.hypot(fit.deviations(scale=(phi * max(fit.mse, 1.0)) ** 0.5), FORM_ERROR * sizes)
+    deviations = np.hypot(fit.errors(phi * max(fit.mse, 1.0)), FORM_ERROR * sizes)
     bounds = [(u.centre + u.unit * u.lower, u.centre + u.unit * u.upper) for u in fit.space.unknowns]
     design = fit.space.base.design
     found: dict[tuple[str, str], Estimate] = {}
