@@ -21,7 +21,15 @@ _DAMPINGS = (1e-3, 1e-1, 1e1, 1e3)
 
 @dataclass(frozen=True, slots=True)
 class Minimum:
-    """Where the search ended: unknowns `z`, `cost` = sum of squares, `normal` = J'J there, simulations used."""
+    """Where the search ended: unknowns `z`, `cost` = sum of squares, simulations used; `normal` = J'J where its last
+    round began.
+
+    That is one step early on purpose. Another Jacobian at the end would cost a fifth to a quarter of all time spent
+    here, and what is quoted does not need it: a hypothesis that is accepted has been fitted again from where it ended,
+    and the standard errors of seven such (`bench/inverse_crime.py`, seed 5, cases 0 to 9) differ by 0.1 % at most. Of
+    the thousand fits that four of these diagnoses made on the way, the largest change of an unknown's error is below
+    0.2 % in the middle one and a factor of 2 to 8 in one in twenty: hypotheses that the search left unfinished.
+    """
 
     z: FloatArray
     cost: float
