@@ -47,9 +47,25 @@ def bootstrap(items: Sequence[T], statistic: Callable[[Sequence[T]], float], see
     return float(low), float(high)
 
 
+def by_trial(trials: Sequence[Sequence[float]], statistic: Callable[[Sequence[float]], float]) -> tuple[float, float]:
+    """95 % interval of a statistic of all that trials hold, by resampling trials: what one holds stands together."""
+
+    def pooled(some: Sequence[Sequence[float]]) -> float:
+        values = [value for trial in some for value in trial]
+        return statistic(values) if values else float("nan")
+
+    return bootstrap(trials, pooled)
+
+
 def median(values: Sequence[float]) -> dict[str, Any]:
-    """Median with its interval; None without values."""
+    """Median of values that have nothing to do with each other, with its interval; None without values."""
+    return median_by_trial([[value] for value in values])
+
+
+def median_by_trial(trials: Sequence[Sequence[float]]) -> dict[str, Any]:
+    """Median of all that the trials hold, `of` so many values, with the interval of `by_trial`; None without values."""
+    values = [value for trial in trials for value in trial]
     if not values:
         return {"median": None, "of": 0, "ci95": None}
-    low, high = bootstrap(values, lambda v: float(np.median(v)))
+    low, high = by_trial(trials, lambda v: float(np.median(v)))
     return {"median": float(np.median(values)), "of": len(values), "ci95": [low, high]}

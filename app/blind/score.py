@@ -11,7 +11,7 @@ from typing import Any
 
 from app.blind.calibration import calibration
 from app.blind.strength import EDGES, STRATA
-from app.interval import bootstrap, median, rate
+from app.interval import by_trial, median, median_by_trial, rate
 
 Line = Mapping[str, Any]
 
@@ -99,8 +99,9 @@ def _among(line: Line, k: int) -> bool:
 
 def _sets(named: Sequence[Line]) -> dict[str, Any]:
     """How often the named causes or what they cannot be told from hold every true cause, and how large the sets are."""
-    sizes = [size for line in named for size in line["mark"]["set_sizes"]]
-    interval = list(bootstrap(sizes, lambda some: sum(some) / len(some))) if sizes else None
+    trials = [line["mark"]["set_sizes"] for line in named]
+    sizes = [size for trial in trials for size in trial]
+    interval = list(by_trial(trials, lambda some: sum(some) / len(some))) if sizes else None
     covered = [line["mark"]["covered"] == len(line["label"]["causes"]) for line in named]
     spoken = [c for c, line in zip(covered, named, strict=True) if line["causes"]]
     mean = sum(sizes) / len(sizes) if sizes else None
@@ -109,10 +110,10 @@ def _sets(named: Sequence[Line]) -> dict[str, Any]:
 
 def _sizes(lines: Sequence[Line]) -> dict[str, Any]:
     checks = [check for line in lines for check in line["sizes"]]
-    large = [check for line in lines if line["ratio"] >= 3.0 for check in line["sizes"]]
+    large = [line for line in lines if line["ratio"] >= 3.0]
     return {
-        "error": median([check["error"] for check in checks]),
-        "error_from_3": median([check["error"] for check in large]),
+        "error": median_by_trial([[check["error"] for check in line["sizes"]] for line in lines]),
+        "error_from_3": median_by_trial([[check["error"] for check in line["sizes"]] for line in large]),
         "covered": rate([check["covered"] for check in checks]),
     }
 

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.interval import bootstrap, median, rate, share, wilson
+from app.interval import bootstrap, by_trial, median, median_by_trial, rate, share, wilson
 
 
 def test_wilson_as_in_the_books() -> None:
@@ -37,3 +37,19 @@ def test_bootstrap_covers_the_median_of_a_known_population() -> None:
 def test_bootstrap_is_repeatable() -> None:
     values = [1.0, 2.0, 5.0, 9.0]
     assert bootstrap(values, np.mean) == bootstrap(values, np.mean)
+
+
+def test_what_trials_hold_twice_is_no_surer_for_it() -> None:
+    values = list(np.random.default_rng(4).exponential(1.0, 30))
+    twice = [[value, value] for value in values]
+    assert median_by_trial(twice)["ci95"] == median(values)["ci95"]
+    assert by_trial(twice, np.mean) == pytest.approx(bootstrap(values, np.mean))
+    wide, narrow = np.diff(by_trial(twice, np.mean)), np.diff(bootstrap(values * 2, np.mean))
+    assert wide > 1.2 * narrow
+
+
+def test_trials_may_hold_nothing() -> None:
+    assert median_by_trial([[], []]) == median([]) == {"median": None, "of": 0, "ci95": None}
+    found = median_by_trial([[], [1.0, 2.0], [3.0]])
+    assert (found["median"], found["of"]) == (2.0, 3)
+    assert 1.0 <= found["ci95"][0] <= 2.0 <= found["ci95"][1] <= 3.0

@@ -70,3 +70,26 @@ def test_families_apart_and_strict_json() -> None:
 
 def test_no_trials_at_all() -> None:
     assert score([])["all"]["right"]["share"] is None
+
+
+def test_intervals_of_what_causes_have_in_common_resample_trials() -> None:
+    """A trial that names two causes is one trial: with the same figures its second cause makes nothing surer."""
+    single = (("creep", "dead_time"),)
+
+    def lines(twice: bool) -> list[dict[str, object]]:
+        found = []
+        for k in range(20):
+            truth = label("effects", "creep", "dead_time") if twice else label("effect", "creep")
+            named = [(name, 0.9) for name in ("creep", "dead_time")[: 1 + twice]]
+            sets = (("creep", "dead_time"), ("dead_time", "creep")) if twice else single
+            one = line(k, truth, said("effects", *named, confusable=sets if k % 2 else ()), 5.0)
+            check = {"error": 0.01 * k, "covered": True}
+            found.append(one | {"sizes": [check] * (1 + twice)})
+        return found
+
+    both, one = (score(lines(twice))["all"] for twice in (True, False))
+    assert both["sets"]["mean_size"] == one["sets"]["mean_size"] == pytest.approx(1.5)
+    assert both["sets"]["ci95"] == one["sets"]["ci95"]
+    for name in ("error", "error_from_3"):
+        assert both["sizes"][name]["of"] == 40
+        assert both["sizes"][name]["ci95"] == one["sizes"][name]["ci95"]
