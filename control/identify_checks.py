@@ -98,16 +98,21 @@ def check_found(estimates: Sequence[Estimate], tracks: Sequence[Track], recordin
     )
 
 
-def check_commands(design: DesignModel, recordings: Sequence[Recording]) -> None:
-    """Raises: `BadInput` where `design` was identified from commands that a positioner was told.
+def told_positions(design: DesignModel, recordings: Sequence[Recording]) -> bool:
+    """Whether `design` was identified from commands that a positioner was told.
 
     A file does not say so; but nothing else has a stem that goes, in percent, where it is told. Where the pressure was
     measured it is the actuator itself that does.
     """
     units = {design.pressure_unit, design.position_unit}
     if units != {PERCENT} or any(each.pressure is not None for each in recordings):
-        return
-    if max(abs(design.a1), abs(design.a2), abs(100.0 * (design.compliance - 1.0))) < ONE_TO_ONE:
+        return False
+    return max(abs(design.a1), abs(design.a2), abs(100.0 * (design.compliance - 1.0))) < ONE_TO_ONE
+
+
+def check_commands(design: DesignModel, recordings: Sequence[Recording]) -> None:
+    """Raises: `BadInput` where `design` was identified from commands that a positioner was told."""
+    if told_positions(design, recordings):
         raise BadInput(
             f"{_names(recordings)}: the position is the command, percent for percent, so the commands are {_POSITIONER}"
         )

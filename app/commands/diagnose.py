@@ -12,7 +12,7 @@ from app.options import bench_options, profile_of, sealed_option
 from app.records import foreign_options
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from control.design import DesignModel
     from logs.recording import DataNote, Recording
@@ -27,6 +27,8 @@ _WITHOUT_DESIGN = {
     "identified from the healthy recordings": "the gap is what has changed since",
     "identified from the record": "the gap is what no numbers of the design can explain; a wrong number cannot show",
 }
+#: `identify` refuses such a record, since its numbers would not be the valve's; a gap shows in it all the same.
+_POSITIONS = "the position is the command, percent for percent, as where a positioner is told positions"
 
 
 #: Relative standard deviation of numbers that were fitted to the record before its faults were known.
@@ -100,7 +102,6 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
     from app.recordings import design_for
-    from logs.recording import DataNote
     from twin.diagnose import Settings, diagnose
     from twin.insert import inserted_from
     from twin.partial import Interrupted
@@ -109,7 +110,7 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
     outcome = None
     model, origin = design_for(design, recordings, golden)
     margin, known = _margin(golden, model)
-    said = known if design else (DataNote(f"{_NO_DESIGN}: {origin}", _WITHOUT_DESIGN.get(origin, "")), *known)
+    said = known if design else (*_without_design(origin, model, golden or recordings), *known)
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
@@ -129,6 +130,18 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
             click.echo(f"Interrupted at the pictures; {out / 'diagnosis.json'} and model.toml beside it are complete.")
         raise
     return outcome
+
+
+def _without_design(origin: str, model: DesignModel, records: Sequence[Recording]) -> Iterator[DataNote]:
+    """What to say where no design was given: where it is from, and whether it is the valve's alone."""
+    from control.identify_checks import told_positions
+    from logs.recording import DataNote
+
+    yield DataNote(f"{_NO_DESIGN}: {origin}", _WITHOUT_DESIGN.get(origin, ""))
+    if told_positions(model, records):
+        yield DataNote(
+            _POSITIONS, "what is diagnosed is valve and positioner together, and no number is the valve's alone"
+        )
 
 
 def _margin(golden: Sequence[Recording], model: DesignModel) -> tuple[Margin, tuple[DataNote, ...]]:
@@ -209,7 +222,7 @@ def _print(outcome: Outcome, out: Path, as_json: bool) -> None:
         return
     click.echo(outcome.diagnosis.statement)
     for note in outcome.diagnosis.data_quality:
-        if note.what.startswith(_NO_DESIGN):
+        if note.what.startswith((_NO_DESIGN, _POSITIONS)):
             click.echo(f"Mind: {note.what}; {note.handled}.")
     for names in outcome.diagnosis.confusable:
         click.echo(f"This data cannot tell apart: {', '.join(names)}.")

@@ -110,3 +110,20 @@ def test_control_c_leaves_the_causes_that_were_tried_alone(
     chances = [line["probability"] for line in found["ranking"]]
     assert chances == sorted(chances, reverse=True)
     assert found["causes"] == []
+
+
+@pytest.mark.thorough
+def test_of_a_positioners_record_it_is_said_that_no_number_is_the_valves(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`identify` refuses it; what a valve leaves undone with its positioner shows all the same."""
+    command = np.repeat(np.random.default_rng(1).uniform(20.0, 80.0, 30), 40)
+    position = command.copy()
+    for row in range(1, command.size):
+        position[row] = command[row] + (position[row - 1] - command[row]) * np.exp(-0.25)
+    table = np.column_stack((np.arange(command.size), command, np.round(position, 1)))
+    np.savetxt(tmp_path / "x.csv", table, delimiter=",", header="time_s,command_%,position_%", comments="")
+    assert run(["diagnose", str(tmp_path / "x.csv"), "--out", str(tmp_path / "d")]) == 0
+    assert "Mind: the position is the command, percent for percent" in capsys.readouterr().out
+    notes = json.loads((tmp_path / "d" / "diagnosis.json").read_text())["data_quality"]
+    assert any("no number is the valve's alone" in note["handled"] for note in notes)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,9 @@ import pytest
 
 from app.cli import run
 from control.design import load_design
+from control.identify import default_design
+from control.identify_checks import told_positions
+from logs.recording import Recording
 from tests.control.toy_valve import Toy, random_steps, record
 
 TRUTH = {"a1": 8.78, "a2": 5.82, "compliance": 0.19, "tau": 2.7, "rate_limit": 0.12, "travel": 0.5625, "ep.tau": 0.3}
@@ -120,3 +124,13 @@ def test_a_strangers_record_of_a_positioner_is_refused_too(tmp_path: Path, capsy
     assert run(["identify", str(tmp_path / "x.csv"), "--out", str(tmp_path / "m.toml")]) == 2
     assert "so the commands are positions for a positioner" in capsys.readouterr().err
     assert not (tmp_path / "m.toml").exists()
+
+
+def test_what_a_positioner_was_told_shows_without_a_pressure_only() -> None:
+    one_to_one = replace(default_design("percent", "percent"), a1=0.4, a2=-0.3, compliance=0.99)
+    blind = Recording("x", np.arange(3.0), np.zeros(3), np.zeros(3), None, "percent", "percent")
+    assert told_positions(one_to_one, [blind])
+    assert not told_positions(one_to_one, [replace(blind, pressure=np.zeros(3))])
+    assert not told_positions(replace(one_to_one, a1=9.0), [blind])
+    assert not told_positions(replace(one_to_one, compliance=0.8), [blind])
+    assert not told_positions(replace(one_to_one, position_unit="mm"), [blind])
