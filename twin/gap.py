@@ -32,7 +32,9 @@ IDLE = 1.03
 class GapParts:
     """Held-out errors, shape (n,), NaN where a row does not count; RMS in % of travel per cause and candidate.
 
-    `without[name]`: the named causes less this one. `alone[name]`: this candidate as the only cause of its channel.
+    `without[name]`: the named causes less this one, what is left of its channel fitted anew; a channel that has no
+    other is the design as given, without the numbers that had moved beside the cause. `alone[name]`: this candidate as
+    the only cause of its channel.
     """
 
     before: FloatArray
