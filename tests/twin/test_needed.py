@@ -115,12 +115,9 @@ def test_a_cause_behind_the_pressure_that_unseen_data_do_not_need(position: tupl
     first, second = decision.names
     causes = tuple(Named(name, "sensor", 0.9, None, {}) for name in decision.names)
     judgement = Judgement("effects", causes, (), ())
-    for without, idle in (({first: 1.5, second: 1.01}, second), ({first: 1.5, second: 1.5}, None)):
-        parts = GapParts(errors(3.0), errors(2.0), errors(0.01), without, {})
-        assert idle_cause(parts, judgement, result, 1.0) == idle
-    parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {first: 1.5, second: 1.1}, {})
-    assert idle_cause(parts, judgement, result, 1.0, 1.15) == second  # what is left without it passes for healthy
-    assert idle_cause(parts, judgement, result, 1.0, 1.05) is None
+    for left, healthy, idle in ((1.01, 0.0, second), (1.5, 0.0, None), (1.1, 1.15, second), (1.1, 1.05, None)):
+        parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {first: 1.5, second: left}, {})
+        assert idle_cause(parts, judgement, result, 1.0, healthy) == idle
     alone = replace(judgement, causes=causes[1:])
     parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {second: 0.9}, {})
     assert idle_cause(parts, alone, result, 1.0) is None

@@ -63,10 +63,10 @@ def test_beside_others_such_a_number_is_named_only_where_it_shows(left: float, n
 
 @pytest.mark.parametrize(("value", "verdict"), [(1.002, "no_gap"), (1.05, "parameter")])
 def test_the_verdict_forgives(value: float, verdict: str) -> None:
-    """Unseen data would uphold it: the design errs 1.12 times the noise, and the number takes all of that."""
+    """Unseen data would uphold it: the design errs 1.2 times the noise, and the number takes all of that."""
     case = make_case([a_record(Plant(DESIGN))], DESIGN)
     decision = accepted("position", "parameter:deadband", 1.25)
     hearing = Hearing(case, decision.findings.none, Sensing((), {}, 0.0), 0.0, Weights(), False)
     named = Judgement("parameter", (off("deadband", value * DESIGN.deadband),), (), ())
     result = StageResult(case, (decision,), case.trials)
-    assert hearing._upheld(result, named, parts(1.12), 1.0)[1].verdict == verdict
+    assert hearing._upheld(result, named, parts(1.2), 1.0)[1].verdict == verdict
