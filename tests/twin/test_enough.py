@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -30,6 +32,20 @@ def test_one_that_explains_all_by_bent_numbers_does_not_end_the_search_either() 
     searcher = Searcher(channel, Plant(DESIGN), Scales())
     assert searcher._nothing_left([one(1.0)], one(0.0))
     assert not searcher._nothing_left([one(5.0)], one(0.0))
+
+
+@pytest.mark.parametrize(
+    ("name", "left", "ends"), [("pressure", 1.6, True), ("pressure", 1.8, False), ("position", 1.6, False)]
+)
+def test_behind_a_pressure_that_passes_for_healthy_no_two_causes_are_looked_for(
+    name: str, left: float, ends: bool
+) -> None:
+    """Its wandering alone makes it 1.25 times its noise, and no single cause explains any of that."""
+    trial = trial_of(Plant(DESIGN), staircase())[0]
+    channel = replace(position_channel([trial], SIGMA), name=name)
+    space = make_space(Plant(DESIGN), (), (), Scales())
+    design = Fit(space, np.zeros(0), left, 0.0, channel.use * left**0.5, np.zeros((0, 0)), 1)
+    assert Searcher(channel, Plant(DESIGN), Scales())._nothing_left([design], design) is ends
 
 
 @pytest.mark.thorough

@@ -15,10 +15,10 @@ from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import decide
 from twin.choose.pairs import _best_of_each, _gains, promising_pairs
-from twin.choose.reform import in_laws, in_other_forms
+from twin.choose.reform import better_of_each, in_laws, in_other_forms
 from twin.choose.rules import DecisionRules
 from twin.choose.screen import make_screen
-from twin.choose.search import Searcher, SearchRules, _better_of_each
+from twin.choose.search import Searcher, SearchRules
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
@@ -211,7 +211,7 @@ def test_a_cause_that_had_stopped_far_from_its_best_alone_is_fitted_again_from_t
     again = searcher._neighbours([pair, stuck])
     assert [f.mse < 1.2 for f in again if f.names == ("lvdt_nonlinearity",)] == [True]
     assert not [f for f in searcher._neighbours([pair, alone]) if f.names == ("lvdt_nonlinearity",)]
-    best = _better_of_each([pair, stuck, *again])
+    best = better_of_each([pair, stuck, *again])
     assert [f.names for f in best] == [pair.names, ("lvdt_nonlinearity",), ("creep",)]
     assert best[1].mse < 1.2
 

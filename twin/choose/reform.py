@@ -77,3 +77,12 @@ def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> lis
             todo = [causes for causes in todo if exactly(causes) not in known]
             found += [(one, todo)] if todo else []
     return found
+
+
+def better_of_each(fits: Sequence[Fit]) -> list[Fit]:
+    """Of fits of the same hypothesis the better one, where the first of them stood."""
+    best: dict[frozenset[tuple[str, str]], Fit] = {}
+    for one in fits:
+        key = exactly(one.space.causes)
+        best[key] = min(best.get(key, one), one, key=lambda f: f.mse)
+    return list(best.values())

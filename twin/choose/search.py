@@ -20,7 +20,7 @@ from twin.choose.findings import Findings
 from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import Pair, promising_pairs
 from twin.choose.polish import polished
-from twin.choose.reform import bent_by, exactly, in_laws, in_other_forms
+from twin.choose.reform import bent_by, better_of_each, exactly, in_laws, in_other_forms
 from twin.choose.score import yardstick_for
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
@@ -55,6 +55,7 @@ class SearchRules:
     stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
+    slight: float = 1.69  # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
 
@@ -89,11 +90,16 @@ class Searcher:
                 break
             level = self._extended(level, size)
             found += level
-        found = _better_of_each([*found, *self._neighbours(found)])
+        found = better_of_each([*found, *self._neighbours(found)])
         return Findings(self.channel, none, retuned, tuple(found), yardstick_for([none, *found], self.channel.use))
 
     def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
-        """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer."""
+        """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer.
+
+        Nothing further is behind a pressure that passes for healthy anyway.
+        """
+        if self.channel.name == "pressure" and none.mse < self.rules.slight:
+            return True
         likely = self._likely(level)[0] if level else none
         if any(c.form is not None for c in likely.space.causes) and bent_by(likely) > self.rules.bent:
             return False
@@ -239,12 +245,3 @@ class Searcher:
         if any(c.effect is not None for c in causes):
             return self.channel.numbers
         return tuple(c.name.removeprefix("parameter:") for c in causes)
-
-
-def _better_of_each(fits: Sequence[Fit]) -> list[Fit]:
-    """Of fits of the same hypothesis the better one, where the first of them stood."""
-    best: dict[frozenset[tuple[str, str]], Fit] = {}
-    for one in fits:
-        key = exactly(one.space.causes)
-        best[key] = min(best.get(key, one), one, key=lambda f: f.mse)
-    return list(best.values())
