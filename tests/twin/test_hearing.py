@@ -122,3 +122,37 @@ def test_a_slight_error_without_a_measured_pressure_has_a_cause_if_a_law_of_the_
     levels = GapParts(*(np.full(8, level) for level in (1.2, 1.2, after)), {}, {})
     named = Judgement("effect", (Named(name, effect(name).stage, 0.9, None, {}),), (), ())
     assert upheld(levels, named, 1.0, Sensing((), {}, 0.0), False, exact=exact)[1].verdict == verdict
+
+
+@pytest.mark.parametrize(
+    ("further", "left", "named"),
+    [
+        ("lvdt_drift", 1.1, False),
+        ("lvdt_drift", 1.2, True),
+        ("parameter:tau", 1.25, False),  # as the design says, to its tolerance
+        ("parameter:tau", 1.35, True),
+    ],
+)
+def test_a_further_cause_is_named_where_the_rest_would_not_pass_for_healthy(
+    monkeypatch: pytest.MonkeyPatch, further: str, left: float, named: bool
+) -> None:
+    record = Recording("r", 0.1 * np.arange(400), np.full(400, 9.0), np.full(400, 0.3), np.full(400, 9.0))
+    case = make_case([record], DESIGN)
+    findings = findings_of({("creep", further): (1.0, 1000.0), ("creep",): (1.2, 990.0)}, 400.0)
+    findings.channel.name, findings.channel.half, findings.channel.trials = "position", 0.0, ()
+    decision = replace(decide(findings, RULES), accepted=findings.fits[0], explained=True, rest=0.0)
+    percent = 100.0 * case.sigma_y / case.travel
+
+    def heldout_parts(case: Any, result: StageResult, *rest: Any) -> GapParts:
+        without = {"creep": 9.0 * percent, further: left * percent}
+        levels = (case.sigma_y * np.full(8, level) for level in (20.0, 20.0, 1.0))
+        return GapParts(*levels, {n: without[n] for n in result.decisions[0].names}, {})
+
+    monkeypatch.setattr(twin.hearing, "heldout_parts", heldout_parts)
+    monkeypatch.setattr(
+        twin.hearing, "within_tolerance", lambda causes, _: ["parameter:tau"] if len(causes) > 1 else []
+    )
+    hearing = Hearing(case, findings.none, Sensing((), {}, 0.0), 0.0, Weights(), False)
+    result = StageResult(case, (decision,), case.trials)
+    told = hearing.held_out(result, hearing.judgement(result), lambda *_: None, case.sigma_y)[1]
+    assert sorted(c.name for c in told.causes) == ["creep", *([further] if named else [])]
