@@ -24,6 +24,7 @@ from twin.choose.reform import bent_by, better_of_each, exactly, in_laws, in_oth
 from twin.choose.score import yardstick_for
 from twin.choose.screen import make_screen, prospects
 from twin.choose.slips import several_slips
+from twin.choose.trim import SLIGHT
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -55,7 +56,9 @@ class SearchRules:
     stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
-    slight: float = 1.69  # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
+    slight: float = (
+        SLIGHT  # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
+    )
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
 

@@ -13,6 +13,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray, Recording
+from twin.noise.still import parabola
 
 #: Commands are taken as their means over so many rows before a reading, back to back.
 _MEANS = (1, 2, 4, 8, 16)
@@ -52,6 +53,5 @@ def _commanded(command: FloatArray, first: int, end: int) -> FloatArray:
         columns.append((total[late] - total[early]) / np.maximum(late - early, 1))
         late = early
     means = np.stack(columns, axis=1)
-    x = np.linspace(-1.0, 1.0, rows.size)
-    basis = np.linalg.qr(np.stack([np.ones(rows.size), x, x * x], axis=1))[0]
+    basis = parabola(rows.size)
     return np.asarray(means - basis @ (basis.T @ means))

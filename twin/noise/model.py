@@ -27,9 +27,8 @@ from twin.noise.still import (
     even_windows,
     given_back,
     held_windows,
-    pieces_of,
     still_pieces,
-    still_rows,
+    still_stretches,
     straight_windows,
 )
 
@@ -169,9 +168,10 @@ def _pieces(name: str, recordings: Sequence[Recording], kind: Literal["held", "s
 
 def _resting_pieces(recordings: Sequence[Recording]) -> list[FloatArray]:
     """Residuals of the position where it rests under any command, as a stem may in its deadband."""
-    rows = [(r, still_rows(r.position, r.period_s, even_windows(r.n, r.period_s))) for r in recordings]
-    pieces = [piece for r, some in rows for piece in pieces_of(r.position, some)]
-    return undriven(pieces, [(r, one) for r, some in rows for one in some])
+    found = [
+        (r, one) for r in recordings for one in still_stretches(r.position, r.period_s, even_windows(r.n, r.period_s))
+    ]
+    return undriven([piece for _, (_, piece) in found], [(r, rows) for r, (rows, _) in found])
 
 
 def _measured(

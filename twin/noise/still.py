@@ -55,7 +55,7 @@ def straight_windows(time_s: FloatArray, command: FloatArray) -> IntArray:
     if starts.size == 0:
         return starts
     windows = command[starts[:, None] + np.arange(width)]
-    line = _parabola(width)[:, :2]
+    line = parabola(width)[:, :2]
     off = np.abs(windows - windows @ line @ line.T).max(axis=1)
     return np.asarray(starts[off <= _STRAIGHT * max(float(np.ptp(command)), 1e-12)])
 
@@ -72,16 +72,19 @@ def still_pieces(signal: FloatArray, period_s: float, starts: IntArray, still: b
     A window is still when its parabola moves by no more than 3 sigma of the window's residual. Unless `still` is asked
     for, it may move, and windows much louder than the quiet ones are left out instead.
     """
-    return pieces_of(signal, still_rows(signal, period_s, starts, still))
+    return [piece for _, piece in still_stretches(signal, period_s, starts, still)]
 
 
-def still_rows(signal: FloatArray, period_s: float, starts: IntArray, still: bool = True) -> list[tuple[int, int]]:
-    """The rows [a, b) of the stretches of `still_pieces`."""
+def still_stretches(
+    signal: FloatArray, period_s: float, starts: IntArray, still: bool = True
+) -> list[tuple[tuple[int, int], FloatArray]]:
+    """The pieces of `still_pieces`, each with its rows [a, b)."""
     if starts.size == 0:
         return []
     width = window_rows(period_s)
     fast = fast_sigma(signal)
-    windows = _without_outliers(signal, 6.0 * fast)[starts[:, None] + np.arange(width)]
+    calm = _without_outliers(signal, 6.0 * fast)
+    windows = calm[starts[:, None] + np.arange(width)]
     good = _enough(np.isfinite(windows))
     starts, windows = starts[good], windows[good]
     fitted, spread = _about_parabolas(windows)
@@ -91,13 +94,8 @@ def still_rows(signal: FloatArray, period_s: float, starts: IntArray, still: boo
     elif good.any():
         good &= spread <= _PLAIN * float(np.quantile(spread[good], 0.3))
     longest = max(1, round(_STRETCH_S / (width * period_s)))
-    return _joined(starts[good], width, longest)
-
-
-def pieces_of(signal: FloatArray, rows: Sequence[tuple[int, int]]) -> list[FloatArray]:
-    """The residuals of these rows [a, b) of a signal about a parabola each."""
-    calm = _without_outliers(signal, 6.0 * fast_sigma(signal))
-    return [_detrended(signal[a:b], calm[a:b]) for a, b in rows]
+    rows = _joined(starts[good], width, longest)
+    return [((a, b), _detrended(signal[a:b], calm[a:b])) for a, b in rows]
 
 
 def given_back(rho: FloatArray, sizes: Sequence[int]) -> tuple[FloatArray, float]:
@@ -125,7 +123,7 @@ def given_back(rho: FloatArray, sizes: Sequence[int]) -> tuple[FloatArray, float
 
 def _left_of_memory(phi: float, size: int, lags: int) -> FloatArray:
     """Expected lag products of noise of variance 1 and correlation phi^lag about its parabola, lags 0..`lags`."""
-    basis = _parabola(size)
+    basis = parabola(size)
     ahead = lfilter([1.0], [1.0, -phi], basis, axis=0)
     behind = lfilter([1.0], [1.0, -phi], basis[::-1], axis=0)[::-1]
     spread = ahead + behind - basis  # the noise's covariance times the basis
@@ -139,7 +137,7 @@ def _left_of_memory(phi: float, size: int, lags: int) -> FloatArray:
 
 
 @lru_cache(maxsize=64)
-def _parabola(size: int) -> FloatArray:
+def parabola(size: int) -> FloatArray:
     """Orthonormal basis of the parabolas on `size` samples, shape (size, 3)."""
     x = np.linspace(-1.0, 1.0, size)
     return np.asarray(np.linalg.qr(np.stack([np.ones(size), x, x * x], axis=1))[0])
@@ -156,7 +154,7 @@ def _enough(seen: npt.NDArray[np.bool_]) -> npt.NDArray[np.bool_]:
 
 def _about_parabolas(windows: FloatArray) -> tuple[FloatArray, FloatArray]:
     """The parabola of each window, shape (n, rows), and a robust sigma about it, shape (n,)."""
-    basis = _parabola(windows.shape[1])
+    basis = parabola(windows.shape[1])
     fitted = windows @ basis @ basis.T
     seen = np.isfinite(windows)
     lacking = ~seen.all(axis=1)
@@ -185,7 +183,7 @@ def _detrended(piece: FloatArray, calm: FloatArray) -> FloatArray:
 
 def _through(values: FloatArray) -> FloatArray:
     """The parabola of least squares through the values that are not missing, at all rows."""
-    basis = _parabola(values.size)
+    basis = parabola(values.size)
     seen = np.isfinite(values)
     if seen.all():
         return np.asarray(basis @ (basis.T @ values))
