@@ -22,7 +22,7 @@ from control.identify_slopes import slopes
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
 from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
-from control.identify_valve import Track, ValveFit, fit_valve
+from control.identify_valve import Track, ValveFit, fit_valve, reach_of
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 
@@ -138,7 +138,7 @@ def _say_zero(
     residual: FloatArray, tracks: Sequence[Track], fit: ValveFit, design: DesignModel, notes: list[str]
 ) -> None:
     """What the design model cannot say: a reading that is off at the open stop, a stem that needs no pressure."""
-    if design.a1 < 0.0:
+    if design.a1 < 0.0 and not reach_of(tracks).away:
         notes.append(
             f"with a1 = {design.a1:.4g} {design.pressure_unit} the stem would close without any pressure: is the "
             "command a position, told to a positioner? Then this is no open-loop record, and no number is the valve's"

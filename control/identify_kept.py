@@ -10,7 +10,7 @@ import numpy as np
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_result import Estimate
-from control.identify_valve import Freedom, Track, ValveFit, top_speed
+from control.identify_valve import Freedom, Track, ValveFit, reach_of, top_speed
 from logs.recording import FloatArray
 
 VAGUE = 0.3  # an interval whose half width is more than this share of the number's size tells nothing
@@ -41,6 +41,11 @@ class Facts:
         return max(float(x.max()) for x in self.fit.predict(self.tracks))
 
     @property
+    def away(self) -> float:
+        """The lowest position of a stem that never came near fully open, where both curves begin; 0 of one that did."""
+        return reach_of(self.tracks).away
+
+    @property
     def both_ways(self) -> bool:
         """Whether the stem went both ways: a record of one stroke shows one curve, whatever the play."""
         moves = [np.diff(x) for x in self.fit.predict(self.tracks)]
@@ -56,10 +61,15 @@ def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]
     half = reach * np.sqrt(np.diag(spread))
     values = facts.freedom.pack(facts.fit.numbers)
     found: dict[str, Interval] = {}
+    doubtful = _doubtful(facts, values, spread, reach)
     for name, value, width in zip(facts.freedom.names, values, half[: values.size], strict=True):
-        vague = VAGUE_ONSET * facts.span if name in ("a1", "a2") else VAGUE * abs(value)
-        if np.isfinite(width) and width <= vague:
+        if np.isfinite(width) and name not in doubtful:
             found[name] = Interval(float(value), float(value - width), float(value + width))
+    if facts.away and {"a1", "a2"} & found.keys():
+        notes.append(
+            f"the stem stayed above {facts.away:.4g} {facts.unit_x}: a1, a2 and the compliance are of its curves as "
+            "they would go on below, and hold together only"
+        )
     estimates = [*_onsets(facts, found, reach, spread, notes), *_rest(facts, found, notes)]
     by_name = {each.name: each.value for each in estimates}
     design = replace(
@@ -73,6 +83,27 @@ def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]
         travel=by_name["travel"],
     )
     return design, estimates
+
+
+def _doubtful(facts: Facts, values: FloatArray, spread: FloatArray, reach: float) -> set[str]:
+    """The numbers that the record tells too vaguely to be kept.
+
+    Of a curve it is the pressure that counts, at the lowest position that the stem went to: where that is far from
+    fully open, onset and slope are one number, and either alone means nothing. Of one stroke there, nothing.
+    """
+    if facts.away and not facts.both_ways:
+        return set(facts.freedom.names)
+    variances = np.diag(spread).copy()
+    if facts.away:
+        way = -facts.away / values[2] ** 2
+        variances[:2] = np.maximum(0.0, variances[:2] + 2.0 * way * spread[:2, 2] + way**2 * spread[2, 2])
+    half = reach * np.sqrt(variances)
+    vague = {name for name, width in zip(("a1", "a2"), half[:2], strict=True) if not width <= VAGUE_ONSET * facts.span}
+    for name, value, width in zip(facts.freedom.names[2:], values[2:], half[2 : values.size], strict=True):
+        carried = name == "compliance" and facts.away and len(vague) < 2
+        if not carried and not width <= VAGUE * abs(value):
+            vague.add(name)
+    return vague
 
 
 def _onsets(

@@ -16,9 +16,9 @@ import numpy as np
 from control.identify_least_squares import Problem, minimise
 from control.identify_model import RATE, TRAVEL, Grid, make_grid, stem
 from control.identify_readings import fast_noise
+from control.identify_starts import NEVER, Reach, first_guesses
 from logs.recording import FloatArray
 
-NEVER = 1e9  # a travel or a rate limit that is never reached
 ROUGH_S = 0.2  # sampling that is good enough for a first guess
 FEWEST_KEPT = 30  # rows, however close together they are
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
@@ -123,7 +123,7 @@ def fit_valve(tracks: Sequence[Track], starts: Sequence[FloatArray] = ()) -> tup
 
 def _settle_freedom(tracks: Sequence[Track], fit: ValveFit) -> tuple[ValveFit, Freedom]:
     """Fits with every combination of rate limit and stop, and keeps the plainest that loses nothing."""
-    speed, top = top_speed(tracks, fit), _top(tracks)
+    speed, top = top_speed(tracks, fit), reach_of(tracks).top
     found: dict[tuple[bool, bool], ValveFit] = {}
     for rate, stop in product((False, True), repeat=2):
         options = []
@@ -172,7 +172,7 @@ def _refine(
     steps = _steps(tracks, freedom, len(tracks))
     low, high = _bounds(tracks, freedom)
     rest = _residual(tracks, np.clip(start, low, high), freedom)
-    soft = 3.0 * max(np.sqrt(_variance(rest)), 1e-4 * _reach(tracks)[1])
+    soft = 3.0 * max(np.sqrt(_variance(rest)), 1e-4 * reach_of(tracks).width)
     problem = Problem(lambda values: _residual(tracks, values, freedom), low, high, steps, soft)
     found, _ = minimise(problem, start, rounds=rounds)
     rest = _residual(tracks, found, freedom)
@@ -191,12 +191,13 @@ def _variance(rest: FloatArray) -> float:
 
 
 def _bounds(tracks: Sequence[Track], freedom: Freedom) -> tuple[FloatArray, FloatArray]:
-    (p_low, p_high), reach = _reach(tracks)
-    span = p_high - p_low
-    slope, top = reach / span, _top(tracks)
+    seen = reach_of(tracks)
+    span, reach, top = seen.span, seen.width, seen.top
+    slope = reach / span
     slopes = 2 if freedom.separate else 1
-    low = [p_low - span, p_low - span, *[0.05 * slope] * slopes, 1e-3]
-    high = [p_high + span, p_high + span, *[200.0 * slope] * slopes, 300.0]
+    lowest = seen.p_low - span - seen.away / (0.05 * slope)
+    low = [lowest, lowest, *[0.05 * slope] * slopes, 1e-3]
+    high = [seen.p_high + span, seen.p_high + span, *[200.0 * slope] * slopes, 300.0]
     low += [1e-4 * reach] * freedom.rate + [0.5 * top] * freedom.travel + [-2.0 * reach] * len(tracks)
     high += [1e3 * reach] * freedom.rate + [2.0 * top] * freedom.travel + [top + 2.0 * reach] * len(tracks)
     return np.array(low), np.array(high)
@@ -204,23 +205,21 @@ def _bounds(tracks: Sequence[Track], freedom: Freedom) -> tuple[FloatArray, Floa
 
 def _steps(tracks: Sequence[Track], freedom: Freedom, count: int) -> FloatArray:
     """A small change of each fitted number: a ten-thousandth of its natural size."""
-    (p_low, p_high), reach = _reach(tracks)
-    span = p_high - p_low
+    seen = reach_of(tracks)
+    span, reach = seen.span, seen.width
     slopes = 2 if freedom.separate else 1
     sizes = [span, span, *[reach / span] * slopes, 1.0] + [reach / 5.0] * freedom.rate + [reach] * freedom.travel
     return 1e-4 * np.array(sizes + [reach] * count)
 
 
-def _reach(tracks: Sequence[Track]) -> tuple[tuple[float, float], float]:
-    """The range of the driving pressure, and the width of the range of the position."""
-    p_low = min(float(t.pressure.min()) for t in tracks)
-    p_high = max(float(t.pressure.max()) for t in tracks)
-    low = min(float(np.percentile(t.position[t.good], 0.5)) for t in tracks)
-    return (p_low, p_high), _top(tracks) - low
-
-
-def _top(tracks: Sequence[Track]) -> float:
-    return max(float(np.percentile(t.position[t.good], 99.5)) for t in tracks)
+def reach_of(tracks: Sequence[Track]) -> Reach:
+    """How far pressure and position go in all of the tracks together."""
+    return Reach(
+        min(float(t.pressure.min()) for t in tracks),
+        max(float(t.pressure.max()) for t in tracks),
+        min(float(np.percentile(t.position[t.good], 0.5)) for t in tracks),
+        max(float(np.percentile(t.position[t.good], 99.5)) for t in tracks),
+    )
 
 
 def top_speed(tracks: Sequence[Track], fit: ValveFit) -> float:
@@ -230,21 +229,12 @@ def top_speed(tracks: Sequence[Track], fit: ValveFit) -> float:
 
 
 def _coarse(tracks: Sequence[Track]) -> list[FloatArray]:
-    """The three best of a few hundred rough guesses that suit any units, and the best without a stop."""
-    (p_low, p_high), width = _reach(tracks)
-    span, top = p_high - p_low, _top(tracks)
-    ranked = []
-    for band, slope, place, tau in product(
-        (0.0, 0.1, 0.2, 0.33, 0.5), (1.0, 1.5, 2.5), (0.1, 0.3, 0.5, 0.7), (0.5, 3.0, 12.0)
-    ):
-        compliance = slope * width / (span * (1.0 - band))
-        room = span * (1.0 - band) - width / compliance * 0.8
-        a2 = p_low + place * max(room, 0.3 * span)
-        numbers = np.array([a2 + band * span, a2, compliance, compliance, tau, NEVER, top])
-        fit = ValveFit(numbers, np.array([t.start for t in tracks]), 0.0)
-        rest = np.abs(fit.residual(tracks))
-        ranked.append((float(np.mean(np.minimum(rest, 0.3 * width) ** 2)), numbers))
-    ranked.sort(key=lambda pair: pair[0])
-    open_ended = ranked[0][1].copy()
-    open_ended[TRAVEL] = NEVER
-    return [*(numbers for _, numbers in ranked[:3]), open_ended]
+    """First guesses, those first that miss least; a guess far off is no worse than one that shows no motion."""
+    reach = reach_of(tracks)
+    starts = np.array([t.start for t in tracks])
+
+    def cost(numbers: FloatArray) -> float:
+        rest = np.abs(ValveFit(numbers, starts, 0.0).residual(tracks))
+        return float(np.mean(np.minimum(rest, 0.3 * reach.width) ** 2))
+
+    return first_guesses(reach, cost)

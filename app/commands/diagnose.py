@@ -21,11 +21,12 @@ if TYPE_CHECKING:
     from twin.diagnosis import Diagnosis
 
 _NO_DESIGN = "no --design given"
+_FROM_RECORD = "identified from the record"
 #: What that means.
 _WITHOUT_DESIGN = {
     "the defaults": "the thesis's numbers are what the record is held against",
     "identified from the healthy recordings": "the gap is what has changed since",
-    "identified from the record": "the gap is what no numbers of the design can explain; a wrong number cannot show",
+    _FROM_RECORD: "the gap is what no numbers of the design can explain; a wrong number cannot show",
 }
 #: `identify` refuses such a record, since its numbers would not be the valve's; a gap shows in it all the same.
 _POSITIONS = "the position is the command, percent for percent, as where a positioner is told positions"
@@ -114,7 +115,7 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
-            identified = origin == "identified from the record"
+            identified = origin == _FROM_RECORD
             settings = Settings(margin=margin)
             settings = replace(settings, doubt=_IDENTIFIED) if identified else settings
             outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
@@ -137,7 +138,10 @@ def _without_design(origin: str, model: DesignModel, records: Sequence[Recording
     from control.identify_checks import told_positions
     from logs.recording import DataNote
 
-    yield DataNote(f"{_NO_DESIGN}: {origin}", _WITHOUT_DESIGN.get(origin, ""))
+    means = _WITHOUT_DESIGN.get(origin, "")
+    if origin == _FROM_RECORD:
+        means += f"; a deadband of {model.deadband:.3g} {model.pressure_unit}, be it play or friction, is in the design"
+    yield DataNote(f"{_NO_DESIGN}: {origin}", means)
     if told_positions(model, records):
         yield DataNote(
             _POSITIONS, "what is diagnosed is valve and positioner together, and no number is the valve's alone"
