@@ -21,8 +21,9 @@ from control.identify_result import Estimate, Identified, misfit, quality_of
 from control.identify_slopes import slopes
 from control.identify_spread import spread_of
 from control.identify_steps import time_constant_63
+from control.identify_track import Track, reach_of
 from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
-from control.identify_valve import Track, ValveFit, fit_valve, reach_of
+from control.identify_valve import ValveFit, fit_valve
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 

@@ -9,8 +9,8 @@ import numpy as np
 from control.design import DesignModel
 from control.identify_readings import fast_noise
 from control.identify_result import Estimate
+from control.identify_track import ROUGH_S, Track
 from control.identify_tracks import FEWEST_ROWS
-from control.identify_valve import ROUGH_S, Track
 from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording

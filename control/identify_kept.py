@@ -10,7 +10,8 @@ import numpy as np
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_result import Estimate
-from control.identify_valve import Freedom, Track, ValveFit, reach_of, top_speed
+from control.identify_track import Track, reach_of
+from control.identify_valve import Freedom, ValveFit, top_speed
 from logs.recording import FloatArray
 
 VAGUE = 0.3  # an interval whose half width is more than this share of the number's size tells nothing
@@ -100,7 +101,7 @@ def _doubtful(facts: Facts, values: FloatArray, spread: FloatArray, reach: float
     half = reach * np.sqrt(variances)
     vague = {name for name, width in zip(("a1", "a2"), half[:2], strict=True) if not width <= VAGUE_ONSET * facts.span}
     for name, value, width in zip(facts.freedom.names[2:], values[2:], half[2 : values.size], strict=True):
-        carried = name == "compliance" and facts.away and len(vague) < 2
+        carried = name == "ep.tau" or (name == "compliance" and facts.away and len(vague) < 2)
         if not carried and not width <= VAGUE * abs(value):
             vague.add(name)
     return vague
@@ -178,7 +179,7 @@ def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Es
         else:
             notes.append(f"{words}: {why}; kept at {default:.4g} {unit}")
             estimates.append(Estimate(name, default, None, unit, "kept", why))
-    ep = facts.ep_tau
-    kept = Estimate("ep.tau", base.ep_tau_s, None, "s", "kept", "not to be told from the record")
+    ep = found.get("ep.tau", facts.ep_tau)
+    kept = Estimate("ep.tau", base.ep_tau_s, None, "s", "kept", "not to be told from the record; tau carries its error")
     estimates.append(Estimate("ep.tau", ep.value, ep, "s", "fit") if ep is not None else kept)
     return estimates

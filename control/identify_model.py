@@ -24,7 +24,7 @@ IntArray = npt.NDArray[np.int64]
 
 SUB_STEP_S = 0.025
 MOST_SUB_STEPS = 400  # in a long gap; the valve is at rest by the end of it anyway
-A1, A2, K1, K2, TAU, RATE, TRAVEL = range(7)  # places in the vector of the valve's numbers
+A1, A2, K1, K2, TAU, RATE, TRAVEL, EP = range(8)  # places in the vector of a fit's numbers
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +64,25 @@ def _lag(step_s: FloatArray, first: IntArray, command: FloatArray, tau_s: float,
     for i in range(1, first.size):
         decay = np.exp(-step_s[i] / tau_s) if tau_s > 1e-9 else 0.0
         for f in range(first[i - 1] + 1, first[i] + 1):
-            p = command[i] + (p - command[i]) * decay
+            p = command[f] + (p - command[f]) * decay
             out[f] = p
 
 
-def lagged(grid: Grid, command: FloatArray, tau_s: float, start: float) -> FloatArray:
-    """The command behind a first-order lag, on the fine grid; `command[i]` holds over the interval up to row i."""
+def held(grid: Grid, command: FloatArray) -> FloatArray:
+    """`command[i]`, which holds over the interval up to row i, on the fine grid."""
+    return np.repeat(command, np.diff(grid.first, prepend=-1))
+
+
+def lagged_fine(grid: Grid, command: FloatArray, tau_s: float, start: float) -> FloatArray:
+    """A command on the fine grid behind a first-order lag."""
     out = np.empty(grid.n_fine)
     _lag(grid.step_s, grid.first, command, tau_s, start, out)
     return out
+
+
+def lagged(grid: Grid, command: FloatArray, tau_s: float, start: float) -> FloatArray:
+    """The command at the rows behind a first-order lag, on the fine grid."""
+    return lagged_fine(grid, held(grid, command), tau_s, start)
 
 
 @compiled
@@ -108,7 +118,8 @@ def _valve(
 def stem(grid: Grid, pressure: FloatArray, numbers: FloatArray, x0: float, w0: float) -> tuple[FloatArray, FloatArray]:
     """Stem position and play output at the rows, shape (n,), for a pressure on the fine grid.
 
-    `numbers` is (a1, a2, k1, k2, tau, rate, travel); `x0`, `w0` are the stem and the play output at the first row.
+    `numbers` begins with (a1, a2, k1, k2, tau, rate, travel); `x0`, `w0` are the stem and the play
+    output at the first row.
     """
     n = grid.time_s.size
     x, w = np.empty(n), np.empty(n)

@@ -10,7 +10,8 @@ from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_result import Estimate
 from control.identify_spread import spread_of
-from control.identify_valve import Freedom, Track, ValveFit, refit_separate
+from control.identify_track import Track
+from control.identify_valve import Freedom, ValveFit, refit_separate
 
 
 def slopes(

@@ -12,7 +12,8 @@ from dataclasses import replace
 import numpy as np
 
 from control.identify_interval import covariance
-from control.identify_valve import Freedom, Track, ValveFit, jacobian
+from control.identify_track import Track
+from control.identify_valve import Freedom, ValveFit, jacobian
 from logs.recording import FloatArray
 
 

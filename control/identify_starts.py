@@ -39,18 +39,24 @@ class Reach:
 
 
 def first_guesses(reach: Reach, cost: Callable[[FloatArray], float]) -> list[FloatArray]:
-    """The three cheapest of a few hundred guesses (a1, a2, k1, k2, tau, rate, travel), and the best without a stop."""
-    ranked = []
-    for away in {0.0, reach.away}:
-        for band, slope, place, tau in product(
-            (0.0, 0.1, 0.2, 0.33, 0.5), (1.0, 1.5, 2.5), (0.1, 0.3, 0.5, 0.7), (0.5, 3.0, 12.0)
-        ):
-            compliance = slope * reach.width / (reach.span * (1.0 - band))
-            room = reach.span * (1.0 - band) - reach.width / compliance * 0.8
-            a2 = reach.p_low + place * max(room, 0.3 * reach.span) - away / compliance
-            numbers = np.array([a2 + band * reach.span, a2, compliance, compliance, tau, NEVER, reach.top])
-            ranked.append((cost(numbers), numbers))
-    ranked.sort(key=lambda pair: pair[0])
-    open_ended = ranked[0][1].copy()
+    """The cheapest guess of the eight numbers of a fit for each width of the play, and the best without a stop.
+
+    One of each width, since a fit that starts without a play seldom finds one, and the cheapest few are often alike.
+    """
+    best = [min((_guesses(reach, band)), key=cost) for band in (0.0, 0.1, 0.2, 0.33, 0.5)]
+    open_ended = min(best, key=cost).copy()
     open_ended[TRAVEL] = NEVER
-    return [*(numbers for _, numbers in ranked[:3]), open_ended]
+    return [*best, open_ended]
+
+
+def _guesses(reach: Reach, band: float) -> list[FloatArray]:
+    """Guesses whose play takes the share `band` of the range of pressures."""
+    guesses = []
+    for away, slope, place, tau_s in product(
+        sorted({0.0, reach.away}), (1.0, 1.5, 2.5), (0.1, 0.3, 0.5, 0.7), (0.5, 3.0, 12.0)
+    ):
+        compliance = slope * reach.width / (reach.span * (1.0 - band))
+        room = reach.span * (1.0 - band) - reach.width / compliance * 0.8
+        a2 = reach.p_low + place * max(room, 0.3 * reach.span) - away / compliance
+        guesses.append(np.array([a2 + band * reach.span, a2, compliance, compliance, tau_s, NEVER, reach.top, np.nan]))
+    return guesses

@@ -8,10 +8,10 @@ from itertools import permutations
 
 import numpy as np
 
-from control.identify_model import lagged, make_grid
+from control.identify_model import held, lagged, make_grid
 from control.identify_pressure import PressureStage, fit_pressure
 from control.identify_readings import false_readings
-from control.identify_valve import Track, first_position
+from control.identify_track import Track, first_position
 from logs.recording import FloatArray, Recording
 
 FEWEST_ROWS = 30
@@ -39,8 +39,8 @@ def drive_of(
     grid = make_grid(recording.time_s)
     if recording.pressure is None:
         notes.append(
-            f"{recording.name}: no measured pressure: the E/P and actuator stages cannot be separated; "
-            f"the E/P lag is kept at {ep_tau_s:g} s, and tau carries its error"
+            f"{recording.name}: no measured pressure: the E/P and actuator stages cannot be separated; only the play "
+            "between them tells their lags apart"
         )
         return None, grid.fine_time_s, lagged(grid, recording.command, ep_tau_s, float(recording.command[0]))
     stage = fit_pressure(grid, recording.command, recording.pressure, ep_tau_s)
@@ -89,5 +89,6 @@ def tracks_of(
         doubt = tuple(np.interp(grid.fine_time_s, recording.time_s, each) for each in doubts)
         position = np.where(good, position, 0.0)
         begin = first_position(grid.time_s, position, good)
-        tracks.append(Track(grid, pressure, position, good, begin, doubt))
+        command = held(grid, recording.command[start:stop]) if recording.pressure is None else None
+        tracks.append(Track(grid, pressure, position, good, begin, doubt, command))
     return tracks

@@ -2,52 +2,34 @@
 
 A coarse search over play width, slope, offset and lag starts it, so that no first guess is needed; a least-squares fit
 that false readings cannot pull ends it. Whether a travel stop and a rate limit are in the record at all is decided by
-fitting with and without them.
+fitting with and without them. Where no pressure was measured, so is whether the record shows the converter's lag: the
+play between the two lags tells them apart.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
 from control.identify_least_squares import Problem, minimise
-from control.identify_model import RATE, TRAVEL, Grid, make_grid, stem
-from control.identify_readings import fast_noise
-from control.identify_starts import NEVER, Reach, first_guesses
+from control.identify_model import EP, RATE, TAU, TRAVEL, stem
+from control.identify_starts import NEVER, first_guesses
+from control.identify_track import Track, reach_of, thinned
 from logs.recording import FloatArray
 
-ROUGH_S = 0.2  # sampling that is good enough for a first guess
-FEWEST_KEPT = 30  # rows, however close together they are
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
 
 
-@dataclass(frozen=True, slots=True)
-class Track:
-    """One record ready to be fitted: its grid, the driving pressure on it, and the position readings, shape (n,)."""
-
-    grid: Grid
-    pressure: FloatArray
-    position: FloatArray
-    good: np.ndarray
-    start: float  # the position at the first row
-    doubts: tuple[FloatArray, ...] = ()  # what the pressure may be off by, on the grid
-
-
-def first_position(time_s: FloatArray, position: FloatArray, good: np.ndarray) -> float:
-    """The position at the first row: a line through the good readings of the first second, or the first five."""
-    when, values = time_s[good], position[good]
-    count = min(when.size, max(5, int(np.searchsorted(when, when[0] + 1.0))))
-    slope, start = np.polyfit(when[:count] - time_s[0], values[:count], 1)
-    steady = abs(slope) * (when[count - 1] - time_s[0]) < 6.0 * fast_noise(values)
-    return float(np.mean(values[:count]) if steady else start)
+SHORTEST = 0.3  # of a sub-step: a lag below it changes nothing, so that no slope would lead back from there
 
 
 @dataclass(frozen=True, slots=True)
 class ValveFit:
-    """`numbers` is (a1, a2, k1, k2, tau, rate, travel); `rate` and `travel` are `NEVER` where they play no part.
+    """`numbers` is (a1, a2, k1, k2, tau, rate, travel, ep_tau); `rate` and `travel` are `NEVER` where they play no
+    part, `ep_tau` is NaN where the pressure is the tracks' own.
 
     `play_starts` holds the play output at the first row of each track.
     """
@@ -59,7 +41,11 @@ class ValveFit:
     def predict(self, tracks: Sequence[Track]) -> list[FloatArray]:
         """The stem at the rows of each track."""
         starts = zip(tracks, self.play_starts, strict=True)
-        return [stem(t.grid, t.pressure, self.numbers, t.start, float(w0))[0] for t, w0 in starts]
+        return [stem(t.grid, t.driven(self.ep_tau_s), self.numbers, t.start, float(w0))[0] for t, w0 in starts]
+
+    @property
+    def ep_tau_s(self) -> float | None:
+        return None if np.isnan(self.numbers[EP]) else float(self.numbers[EP])
 
     def residual(self, tracks: Sequence[Track]) -> FloatArray:
         """Readings minus prediction over all good rows of all tracks."""
@@ -69,82 +55,83 @@ class ValveFit:
 
 @dataclass(frozen=True, slots=True)
 class Freedom:
-    """Which numbers are fitted. `separate` lets the two curves have slopes of their own."""
+    """Which numbers are fitted. `separate` lets the two curves have slopes of their own, `ep` the converter its lag."""
 
     rate: bool
     travel: bool
     separate: bool = False
+    ep: bool = False
 
     @property
     def names(self) -> tuple[str, ...]:
         slopes = ("k1", "k2") if self.separate else ("compliance",)
-        return ("a1", "a2", *slopes, "tau") + ("rate_limit",) * self.rate + ("travel",) * self.travel
+        limits = ("rate_limit",) * self.rate + ("travel",) * self.travel
+        return ("a1", "a2", *slopes, "tau", *limits) + ("ep.tau",) * self.ep
 
     def unpack(self, values: FloatArray) -> FloatArray:
-        """The seven numbers from the fitted ones, in the order of `names`."""
-        slopes = 2 if self.separate else 1
-        numbers = np.array([values[0], values[1], values[2], values[1 + slopes], values[2 + slopes], NEVER, NEVER])
-        place = 3 + slopes
-        if self.rate:
-            numbers[RATE] = values[place]
-            place += 1
-        if self.travel:
-            numbers[TRAVEL] = values[place]
-        return numbers
+        """The eight numbers from the fitted ones, in the order of `names`."""
+        named = dict(zip(self.names, values, strict=True))
+        k1 = named.get("compliance", named.get("k1"))
+        k2 = named.get("compliance", named.get("k2"))
+        rate, travel, ep = named.get("rate_limit", NEVER), named.get("travel", NEVER), named.get("ep.tau", np.nan)
+        return np.array([named["a1"], named["a2"], k1, k2, named["tau"], rate, travel, ep], dtype=float)
 
     def pack(self, numbers: FloatArray) -> FloatArray:
-        a1, a2, k1, k2, tau, rate, travel = numbers
+        a1, a2, k1, k2, tau, rate, travel, ep = numbers
         slopes = [k1, k2] if self.separate else [0.5 * (k1 + k2)]
-        return np.array([a1, a2, *slopes, tau] + [rate] * self.rate + [travel] * self.travel)
+        return np.array([a1, a2, *slopes, tau] + [rate] * self.rate + [travel] * self.travel + [ep] * self.ep)
 
 
-def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
-    """The same record with rows and sub-steps as coarse as a first guess allows.
-
-    Positions may be missing with a period of their own: of the rows that could be kept those are that have the most.
-    """
-    time_s = track.grid.time_s
-    stride = max(1, int(least_period_s / max(float(np.median(np.diff(time_s))), 1e-6)))
-    stride = min(stride, max(1, time_s.size // FEWEST_KEPT))
-    keep = max((slice(first, None, stride) for first in range(stride)), key=lambda rows: int(track.good[rows].sum()))
-    grid = make_grid(time_s[keep], 0.25 * least_period_s)
-    pressure = np.interp(grid.fine_time_s, track.grid.fine_time_s, track.pressure)
-    return Track(grid, pressure, track.position[keep], track.good[keep], track.start)
-
-
-def fit_valve(tracks: Sequence[Track], starts: Sequence[FloatArray] = ()) -> tuple[ValveFit, Freedom]:
-    """The best fit over all tracks, and which numbers it needed. `starts` are further first guesses (7 numbers)."""
+def fit_valve(tracks: Sequence[Track]) -> tuple[ValveFit, Freedom]:
+    """The best fit over all tracks, and which numbers it needed."""
     rough = [thinned(track) for track in tracks]
-    guesses = [*(np.array(start) for start in starts), *_coarse(rough)]
+    guesses = _coarse(rough)
     fits = [_refine(rough, each, Freedom(False, bool(each[TRAVEL] < NEVER)), rounds=8) for each in guesses]
-    fit, freedom = _settle_freedom(rough, min(fits, key=lambda each: each.cost))
+    ep = all(track.command is not None for track in tracks)
+    if ep:
+        starts = [*guesses, min(fits, key=lambda each: each.cost).numbers]
+        fits = [_with_converter(rough, each) for each in starts]
+    fit, freedom = _settle_freedom(rough, min(fits, key=lambda each: each.cost), ep)
     return _refine(tracks, fit.numbers, freedom, rounds=12, play_starts=fit.play_starts), freedom
 
 
-def _settle_freedom(tracks: Sequence[Track], fit: ValveFit) -> tuple[ValveFit, Freedom]:
-    """Fits with every combination of rate limit and stop, and keeps the plainest that loses nothing."""
+def _with_converter(tracks: Sequence[Track], numbers: FloatArray) -> ValveFit:
+    """The better of two fits whose converter has a lag, from smaller shares on: without a play either lag would do."""
+    options = []
+    for share in (0.1, 0.3):
+        start = numbers.copy()
+        start[EP], start[TAU] = share * numbers[TAU], (1.0 - share) * numbers[TAU]
+        options.append(_refine(tracks, start, Freedom(False, bool(start[TRAVEL] < NEVER), ep=True), rounds=8))
+    return min(options, key=lambda each: each.cost)
+
+
+def _settle_freedom(tracks: Sequence[Track], fit: ValveFit, ep: bool) -> tuple[ValveFit, Freedom]:
+    """Fits with every combination of rate limit, stop and, where there is no pressure, converter, and keeps the
+    plainest that loses nothing.
+    """
     speed, top = top_speed(tracks, fit), reach_of(tracks).top
-    found: dict[tuple[bool, bool], ValveFit] = {}
-    for rate, stop in product((False, True), repeat=2):
-        options = []
+    found: dict[Freedom, ValveFit] = {}
+    for rate, stop, lags in product((False, True), (False, True), (False, True) if ep else (False,)):
+        freedom, options = Freedom(rate, stop, ep=lags), []
         for share in (0.4, 0.8) if rate else (1.0,):
             numbers = fit.numbers.copy()
             numbers[RATE] = share * speed if rate else NEVER
             numbers[TRAVEL] = top if stop else NEVER
-            options.append(_refine(tracks, numbers, Freedom(rate, stop), rounds=10))
-        found[rate, stop] = min(options, key=lambda each: each.cost)
-    full = found[True, True]
-    worth = GAIN_FOR_A_NUMBER * _variance(full.residual(tracks))
-    for rate, stop in ((False, False), (False, True), (True, False)):
-        lacking = (not rate) + (not stop)
-        if found[rate, stop].cost - full.cost < worth * lacking:
-            return found[rate, stop], Freedom(rate, stop)
-    return full, Freedom(True, True)
+            numbers[EP] = numbers[EP] if lags else np.nan
+            options.append(_refine(tracks, numbers, freedom, rounds=10))
+        found[freedom] = min(options, key=lambda each: each.cost)
+    full = Freedom(True, True, ep=ep)
+    worth = GAIN_FOR_A_NUMBER * _variance(found[full].residual(tracks))
+    for freedom in sorted(found, key=lambda each: (len(each.names), each.rate)):
+        lacking = len(full.names) - len(freedom.names)
+        if found[freedom].cost - found[full].cost < worth * lacking:
+            return found[freedom], freedom
+    return found[full], full
 
 
 def refit_separate(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> tuple[ValveFit, Freedom]:
     """The same fit with a slope for each curve."""
-    separate = Freedom(freedom.rate, freedom.travel, separate=True)
+    separate = replace(freedom, separate=True)
     return _refine(tracks, fit.numbers, separate, rounds=12, play_starts=fit.play_starts), separate
 
 
@@ -196,10 +183,13 @@ def _bounds(tracks: Sequence[Track], freedom: Freedom) -> tuple[FloatArray, Floa
     slope = reach / span
     slopes = 2 if freedom.separate else 1
     lowest = seen.p_low - span - seen.away / (0.05 * slope)
-    low = [lowest, lowest, *[0.05 * slope] * slopes, 1e-3]
+    least_s = SHORTEST * float(np.median(tracks[0].grid.step_s[1:]))
+    low = [lowest, lowest, *[0.05 * slope] * slopes, least_s]
     high = [seen.p_high + span, seen.p_high + span, *[200.0 * slope] * slopes, 300.0]
-    low += [1e-4 * reach] * freedom.rate + [0.5 * top] * freedom.travel + [-2.0 * reach] * len(tracks)
-    high += [1e3 * reach] * freedom.rate + [2.0 * top] * freedom.travel + [top + 2.0 * reach] * len(tracks)
+    low += [1e-4 * reach] * freedom.rate + [0.5 * top] * freedom.travel
+    low += [least_s] * freedom.ep + [-2.0 * reach] * len(tracks)
+    high += [1e3 * reach] * freedom.rate + [2.0 * top] * freedom.travel
+    high += [300.0] * freedom.ep + [top + 2.0 * reach] * len(tracks)
     return np.array(low), np.array(high)
 
 
@@ -209,17 +199,7 @@ def _steps(tracks: Sequence[Track], freedom: Freedom, count: int) -> FloatArray:
     span, reach = seen.span, seen.width
     slopes = 2 if freedom.separate else 1
     sizes = [span, span, *[reach / span] * slopes, 1.0] + [reach / 5.0] * freedom.rate + [reach] * freedom.travel
-    return 1e-4 * np.array(sizes + [reach] * count)
-
-
-def reach_of(tracks: Sequence[Track]) -> Reach:
-    """How far pressure and position go in all of the tracks together."""
-    return Reach(
-        min(float(t.pressure.min()) for t in tracks),
-        max(float(t.pressure.max()) for t in tracks),
-        min(float(np.percentile(t.position[t.good], 0.5)) for t in tracks),
-        max(float(np.percentile(t.position[t.good], 99.5)) for t in tracks),
-    )
+    return 1e-4 * np.array(sizes + [1.0] * freedom.ep + [reach] * count)
 
 
 def top_speed(tracks: Sequence[Track], fit: ValveFit) -> float:
