@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -9,8 +10,9 @@ import numpy as np
 import pytest
 
 from twin.catalog import effect
+from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
-from twin.choose.trim import _instead, doubtful
+from twin.choose.trim import _instead, doubtful, dropped
 from twin.fit.space import Cause
 
 
@@ -69,3 +71,26 @@ def test_a_twin_is_no_rival_besides() -> None:
     """Its belief counts with the cause's own, and once."""
     probability = {"sensor_lag": 0.01, "additional_lag": 0.43}
     assert doubtful("sensor_lag", probability, (), (("sensor_lag", "additional_lag"),))
+
+
+def pair(names: tuple[str, ...], mse: float, moved: float) -> Any:
+    """A fit of several causes; `moved`: how far the deadband went, as a share of itself."""
+    fit = one(names[0], mse, moved)
+    return SimpleNamespace(**{**vars(fit), "names": names})
+
+
+@pytest.mark.parametrize(("moved", "mse", "left"), [(0.24, 0.9, True), (0.02, 0.9, False), (0.24, 0.99, False)])
+def test_a_number_that_an_effect_took_along_is_accused_when_the_effect_goes(moved, mse, left) -> None:
+    """Unless it hardly moved, or accusing it explains no more."""
+    alone = pair(("additional_lag",), 1.0, moved)
+    with_number = pair(("additional_lag", "parameter:deadband"), mse, moved)
+    both = pair(("additional_lag", "flow_force"), 0.8, 0.0)
+    findings: Any = SimpleNamespace(
+        none=one("parameter:tau", 16.2, 0.0), fits=(both, alone, with_number), score=lambda f: -200.0 * f.mse
+    )
+    decision = Decision(findings, both, True, True, 0.0)
+    smaller = dropped(decision, "flow_force")
+    assert smaller is not None
+    assert smaller.accepted is (with_number if left else alone)
+    number = dropped(replace(decision, accepted=with_number), "parameter:deadband")
+    assert number is not None and number.accepted is alone  # what was dropped does not come back

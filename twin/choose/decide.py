@@ -79,7 +79,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             better, instead = instead, None
         accepted = better
     accepted = _fewer_unknowns(findings, _plainer_member(findings, accepted, rules), rules)
-    accepted = _with_numbers(findings, accepted, rules)
+    accepted = with_numbers(findings, accepted, rules.evidence)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
@@ -147,7 +147,7 @@ def _with_another(f: Fit, fit: Fit) -> bool:
     return other and bool(effects_of(f) - effects_of(fit))
 
 
-def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+def with_numbers(findings: Findings, fit: Fit, evidence: float) -> Fit:
     """`fit`, or the same effects with the design numbers accused that they had to move far.
 
     A number that rides along as a nuisance leaves no gap to be closed by accusing it; what it pays is its prior.
@@ -156,7 +156,7 @@ def _with_numbers(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     own = set(fit.names)
     larger = [f for f in findings.fits if own < set(f.names) and set(f.names) - own <= moved]
     best = max(larger, key=findings.score, default=None)
-    if best is None or size_of(fit) == 0 or findings.score(best) - findings.score(fit) <= rules.evidence:
+    if best is None or size_of(fit) == 0 or findings.score(best) - findings.score(fit) <= evidence:
         return fit
     return best
 

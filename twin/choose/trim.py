@@ -12,7 +12,7 @@ from dataclasses import replace
 from twin.catalog import effects
 from twin.choose.alike import alike
 from twin.choose.claims import size_of
-from twin.choose.decide import Decision
+from twin.choose.decide import Decision, with_numbers
 from twin.choose.findings import Findings
 from twin.choose.idle import idle
 from twin.choose.needless import rival_in
@@ -94,10 +94,16 @@ def dropped(decision: Decision, name: str) -> Decision | None:
 
 
 def _without(decision: Decision, name: str) -> Fit | None:
-    """The best hypothesis with the other causes of the accepted one."""
+    """The best hypothesis with the other causes of the accepted one.
+
+    With the numbers accused that stood for an effect while it was there: some take a number along as their own.
+    """
     kept = sorted(set(decision.names) - {name})
     fits = [f for f in decision.findings.fits if sorted(f.names) == kept]
-    return max(fits, key=decision.findings.score, default=None)
+    best = max(fits, key=decision.findings.score, default=None)
+    if best is None or name not in effects():
+        return best
+    return with_numbers(decision.findings, best, DecisionRules().evidence)
 
 
 def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple[Decision, ...]:
