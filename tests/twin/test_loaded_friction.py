@@ -17,7 +17,7 @@ D = DesignModel()
 TIME_S = np.arange(0.0, 80.0, 0.05)
 #: Against both stops, and back and forth between them.
 PRESSURE = np.interp(TIME_S, [0, 10, 16, 28, 33, 40, 46, 53, 60, 80], [6, 13.5, 13.5, 5, 5, 11.5, 8, 10.5, 9, 14.5])
-SHARE, LOAD, BELOW, ABOVE = 0.7, 0.4, 0.05, 0.08
+SHARE, LOAD, BELOW, ABOVE = 0.7, 0.28, 0.05, 0.08
 
 
 def stepped(load: float, below: float, above: float, h: float = 2e-3) -> FloatArray:
@@ -41,7 +41,7 @@ def _balance(p: float, sign: float, load: float) -> float:
     low, high = -1.0, 2.0
     for _ in range(24):
         w = 0.5 * (low + high)
-        friction = 0.5 * D.deadband * SHARE * (1.0 + load * (min(max(w / D.travel, 0.0), 1.0) - 0.5))
+        friction = 0.5 * D.deadband * (SHARE + load * (min(max(w / D.travel, 0.0), 1.0) - 0.5))
         low, high = (w, high) if p > D.offset + w / D.compliance + sign * friction else (low, w)
     return w
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.special import chdtri
 
 from logs.recording import FloatArray
 from twin.choose.needless import without_needless
@@ -12,6 +13,9 @@ from twin.choose.score import yardstick_for
 from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED, Cause
+
+#: How often chance alone leaves sizes nearer to nothing than what counts as a size.
+_SURE = 0.95
 
 
 def some_of_each(ranked: Sequence[Prospect], causes: int, forms: int) -> list[Prospect]:
@@ -31,7 +35,7 @@ def size_of(fit: Fit) -> int:
 
 
 def hollow(fit: Fit, phi: float) -> bool:
-    """Whether an effect of the hypothesis has no size: its sizes together within a standard deviation of nothing.
+    """Whether an effect of the hypothesis has no size: its sizes together no further from nothing than 95 % of chance.
 
     Its nuisances then do what it takes the credit for. `phi`: residual samples worth one independent one.
     """
@@ -56,12 +60,14 @@ def _shapes(fit: Fit) -> list[int]:
 
 
 def _is_nothing(fit: Fit, covariance: FloatArray, which: list[int]) -> bool:
-    """Whether these unknowns, each of which may be unsure alone, are together no further from 0 than chance takes them.
+    """Whether these unknowns, each of which may be unsure alone, are together no further from 0 than chance takes them
+    in 95 of 100 cases.
 
     Source: Wald, Trans. Am. Math. Soc. 54 (1943) 426.
     """
     sizes = fit.z[which]
-    return float(sizes @ np.linalg.pinv(covariance[np.ix_(which, which)]) @ sizes) < len(which)
+    distance = float(sizes @ np.linalg.pinv(covariance[np.ix_(which, which)]) @ sizes)
+    return distance < float(chdtri(len(which), 1.0 - _SURE))
 
 
 def best_forms(fits: Sequence[Fit], use: np.ndarray, none: Fit) -> list[Fit]:

@@ -17,6 +17,7 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
+from twin.choose.likeliest import likeliest
 from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import Pair, promising_pairs
 from twin.choose.polish import polished
@@ -103,7 +104,7 @@ class Searcher:
         """
         if self.channel.name == "pressure" and none.mse < self.rules.slight:
             return True
-        likely = self._likely(level)[0] if level else none
+        likely = likeliest(level, self.channel.use)[0] if level else none
         if any(c.form is not None for c in likely.space.causes) and bent_by(likely) > self.rules.bent:
             return False
         return likely.mse - 1.0 <= max(self.rules.enough - 1.0, self.rules.enough_share * (none.mse - 1.0))
@@ -113,7 +114,7 @@ class Searcher:
         # Of three causes that explain all, the best two explain two thirds, or more.
         if min(f.mse for f in pairs) - 1.0 > self.rules.hopeless * (retuned.mse - 1.0):
             return True
-        return self._likely(pairs)[0].mse - 1.0 < self.rules.scant * (none.mse - 1.0)
+        return likeliest(pairs, self.channel.use)[0].mse - 1.0 < self.rules.scant * (none.mse - 1.0)
 
     def _singles(self, retuned: Fit) -> list[Fit]:
         numbers = number_causes(self.channel)
@@ -140,7 +141,7 @@ class Searcher:
         """The hypotheses of the beam, each with what one more cause makes of it; no causes twice."""
         found = []
         seen: set[tuple[str, ...]] = set()
-        for parent in self._likely(level)[: self.rules.beam]:
+        for parent in likeliest(level, self.channel.use)[: self.rules.beam]:
             more = [c for c in singles if c.name not in parent.names and not same_claim(parent, c)]
             more = [c for c in more if tuple(sorted((*parent.names, c.name))) not in seen]
             found.append((parent, [(*parent.space.causes, c) for c in more]))
@@ -156,7 +157,7 @@ class Searcher:
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
         least = max(self.rules.enough - 1.0, self.rules.reform_share * (self.origins[0].mse - 1.0))
-        best = self._likely(pairs)[0] if pairs else None
+        best = likeliest(pairs, self.channel.use)[0] if pairs else None
         if best is None or (best.mse - 1.0 <= least and bent_by(best) < self.rules.bent):
             return []
         todo = in_other_forms(pairs, self.tried, self.rules.reformed)
@@ -167,7 +168,7 @@ class Searcher:
         if self.resting > self.rules.restless:
             return []
         causes = [c for c in effect_causes(self.channel, self.base) if c.effect is not None and c.effect.drifts]
-        likely = [f for f in self._likely(level)[:2] if f.mse > self.resting]
+        likely = [f for f in likeliest(level, self.channel.use)[:2] if f.mse > self.resting]
         pairs = [(*f.space.causes, c) for f in likely for c in causes if c.name not in f.names and not same_claim(f, c)]
         fits = self._each(lambda some: self._fit(some, [*likely, *self.tried]), pairs, "drifts")
         return best_forms(fits, self.channel.use, self.origins[0])
@@ -180,7 +181,7 @@ class Searcher:
         """
         todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
         effects = effect_causes(self.channel, self.base)
-        for one in self._likely(found)[: self.rules.beam] if found else []:
+        for one in likeliest(found, self.channel.use)[: self.rules.beam] if found else []:
             causes = one.space.causes
             beside = [(*causes, *some) for some in suspected(one)]
             if len(causes) > 1:
@@ -194,10 +195,6 @@ class Searcher:
     def _fit_from(self, causes: tuple[Cause, ...], parent: Fit) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
         return fit(self.channel, space, starts_of(space, [parent]), rounds=self.rules.rounds)
-
-    def _likely(self, level: Sequence[Fit]) -> list[Fit]:
-        """The hypotheses by their scores, best first: one that bends all numbers to imitate others is not likely."""
-        return sorted(level, key=yardstick_for(level, self.channel.use).score, reverse=True)
 
     def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
         """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""

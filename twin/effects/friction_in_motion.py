@@ -62,9 +62,9 @@ _LOAD = Parameter(
     kind="fraction",
     lower=0.0,
     upper=1.0,
-    starts=(0.03, 0.2),
-    scale=0.3,
-    doc="by how much friction is more at full pressure than at least pressure, over its mean",
+    starts=(0.01, 0.1),
+    scale=0.15,
+    doc="by how much friction is more at full pressure than at least pressure, over the half deadband",
     size=False,
 )
 
@@ -145,7 +145,7 @@ def _loaded(c: Coefficients, values: Sequence[float]) -> None:
     share, load, below, above = values
     _partial(c, values)
     if share > 0.0:
-        more = 0.5 * c.design.deadband * share * load * (c.xi - 0.5)
+        more = 0.5 * c.design.deadband * load * (c.xi - 0.5)
         c.close_shift += more
         c.open_shift -= more
         c.press_beyond_stops(below, above)
@@ -180,7 +180,7 @@ EFFECT = Effect(
     "friction turns over a distance, w is held only beyond the stops, x at the stops; elastic_landing: beyond a stop "
     "that the stem lands on softly w goes on by gives times what it would; "
     "partial_elastic: as partial, with such friction and such stops; "
-    "partial_loaded: as partial, with friction in proportion to 1 + load (w / travel - 1/2) and such stops",
+    "partial_loaded: as partial, with friction in proportion to share + load (w / travel - 1/2) and such stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
     "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007) 580 (rounded)",
     forms=(
