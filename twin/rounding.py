@@ -15,6 +15,7 @@ import numpy.typing as npt
 
 from logs.recording import DataNote, FloatArray, Recording
 from twin.catalog import effect
+from twin.choose.candidates import ROUNDS_BY
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.trial import make_trial
 from twin.noise.blurred import resultant
@@ -41,10 +42,10 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
         return ()
     trials = [make_trial(r, _STEP_S, bad) for r, bad in zip(recordings, sensing.bad_rows, strict=True)]
     channel = chain_channel(trials, 1.0)
-    form = effect("lvdt_calibration").form("zero")
+    form = effect(ROUNDS_BY).form("zero")
     lacking = rounding_bias(np.concatenate([r.position for r in recordings]), sensing.step)
     offs_in = [s * sensing.step for s in (0.0, -0.5, 0.5, -lacking, lacking)][: 5 if lacking > 0.0 else 3]
-    options = [(Inserted("lvdt_calibration", form, (off_in,)),) if off_in else () for off_in in offs_in]
+    options = [(Inserted(ROUNDS_BY, form, (off_in,)),) if off_in else () for off_in in offs_in]
     told = lacking == 0.0 and not (sensing.sharp and _beside_zero(recordings, sensing.step))
     stops = _telling_rows(channel, plant, sensing.step) if told else []
     if stops:

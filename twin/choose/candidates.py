@@ -6,8 +6,11 @@ from twin.catalog import effects
 from twin.effect import Effect, Form
 from twin.fit.channel import Channel
 from twin.fit.space import Cause
-from twin.plant import Plant
+from twin.plant import Inserted, Plant
 from twin.slots import S_SEEN
+
+#: What makes a reading that rounds down, in `twin/rounding.py`.
+ROUNDS_BY = "lvdt_calibration"
 
 
 def number_causes(channel: Channel) -> list[Cause]:
@@ -19,7 +22,8 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     """Every effect of the channel's stages in every form that acts on the trajectory.
 
     An effect of the `base` plant stands trial only if the design's file brought it, and in the file's form: it may have
-    changed. What was inserted for the record's sake (a late sample, a reading that rounds down) is settled.
+    changed. What was inserted for the record's sake (a late sample) is settled, but for the zero of a reading that
+    rounds down: whatever else is wrong with the calibration is beside that.
     """
     records = max((trial.place.of for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
@@ -43,6 +47,13 @@ def _forms(effect: Effect, base: Plant | None) -> list[tuple[Form, tuple[float, 
     present = None if base is None else next((one for one in base.inserted if one.effect == effect.name), None)
     if base is None or present is None:
         return [(form, ()) for form in effect.forms]
-    if effect.name not in base.design.effects or not any(p.size for p in present.form.parameters):
-        return []
-    return [(present.form, tuple(present.values))]
+    if effect.name in base.design.effects:
+        return [(present.form, tuple(present.values))] if any(p.size for p in present.form.parameters) else []
+    return _with_zero(effect, present) if effect.name == ROUNDS_BY else []
+
+
+def _with_zero(effect: Effect, present: Inserted) -> list[tuple[Form, tuple[float, ...]]]:
+    """The forms that can have the zero that is `present`, with it."""
+    zero = dict(zip((p.name for p in present.form.parameters), present.values, strict=True))
+    able = [form for form in effect.forms if zero.keys() <= {p.name for p in form.parameters}]
+    return [(form, tuple(zero.get(p.name, p.neutral) for p in form.parameters)) for form in able]
