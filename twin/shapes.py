@@ -29,6 +29,19 @@ WIDTH = Parameter(
     neutral=0.1,
     size=False,
 )
+#: A moment of all recordings, looked for at so many: what changes all at once shows from there on only.
+WHEN = Parameter(
+    name="when",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=tuple(0.02 + 0.96 * (0.5 + k) / 24 for k in range(24)),
+    scale=0.2,
+    doc="when it changes, fraction of all recordings",
+    neutral=0.5,
+    smooth=False,
+    size=False,
+)
 
 
 def bow(xi: FloatArray) -> FloatArray:

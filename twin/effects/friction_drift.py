@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import exp
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.shapes import WHEN
 from twin.slots import (
     V_DRIFT_AMP,
     V_DRIFT_RATE,
@@ -57,18 +58,7 @@ _WEAR = Parameter(
     scale=0.05,
     doc="growth of the half deadband per travelled distance",
 )
-_WHEN = Parameter(
-    name="when",
-    kind="fraction",
-    lower=0.02,
-    upper=0.98,
-    starts=(0.2, 0.4, 0.6, 0.8),
-    scale=0.2,
-    doc="when the change happens, fraction of the recording",
-    neutral=0.5,
-    smooth=False,
-    size=False,
-)
+_WHEN = replace(WHEN, starts=(0.2, 0.4, 0.6, 0.8), doc="when the change happens, fraction of the recording")
 
 
 _EASES = Parameter(

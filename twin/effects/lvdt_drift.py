@@ -10,6 +10,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from twin.shapes import WHEN
 from twin.slots import (
     KNOTS,
     S_CYCLE_COS,
@@ -93,17 +94,10 @@ _LOOKS = 48
 #: The stem's time constant in which a zero creeps, of a design that says it has none [s].
 _LEAST_S = 1e-3
 _STEP = replace(_CHANGE, name="zero", starts=(-0.005, 0.005), doc="by how much the zero jumps")
-_WHEN = Parameter(
-    name="when",
-    kind="fraction",
-    lower=0.02,
-    upper=0.98,
+_WHEN = replace(
+    WHEN,
     starts=tuple(0.02 + 0.96 * (0.5 + k) / _LOOKS for k in range(_LOOKS)),
-    scale=0.2,
     doc="when it jumps, fraction of all recordings",
-    neutral=0.5,
-    smooth=False,
-    size=False,
 )
 
 

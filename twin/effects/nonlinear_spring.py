@@ -9,20 +9,12 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.shapes import CENTRE, WIDTH, bow, edge, swing
+from twin.shapes import CENTRE, WHEN, WIDTH, bow, edge, swing
 from twin.slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
 
 
 def _parameter(name: str, doc: str) -> Parameter:
-    return Parameter(
-        name=name,
-        kind="pressure",
-        lower=-1.5,
-        upper=1.5,
-        starts=(-0.25, 0.25),
-        scale=0.25,
-        doc=doc,
-    )
+    return Parameter(name=name, kind="pressure", lower=-1.5, upper=1.5, starts=(-0.25, 0.25), scale=0.25, doc=doc)
 
 
 def _shift(c: Coefficients, shift: FloatArray) -> None:
@@ -86,6 +78,10 @@ _LEAST_FOLD = 1.1
 
 def _step(c: Coefficients, values: Sequence[float]) -> None:
     _shift(c, values[0] * _span(c) * values[2] * edge(c.xi, values[1], values[2]))
+
+
+def _hardens(c: Coefficients, values: Sequence[float]) -> None:
+    _shift(c, 0.5 * values[0] * _span(c) * np.square(c.xi))
 
 
 def _helper(c: Coefficients, values: Sequence[float]) -> None:
@@ -165,6 +161,12 @@ _HELPS = replace(
     scale=0.3,
     doc="excess of the spring's rate from there to the closed end, where a second spring takes part",
 )
+_HARDER = replace(
+    _HELPS,
+    name="harder",
+    lower=-0.9,
+    doc="excess of the spring's rate at the closed end, growing evenly from fully open",
+)
 _FROM = replace(
     _CENTRE, name="from", lower=0.05, upper=0.95, starts=(0.3, 0.55, 0.8), doc="where it begins, fraction of travel"
 )
@@ -194,18 +196,6 @@ _STEEPER = Parameter(
 _SNAPS_AT = replace(_CENTRE, lower=0.0, starts=tuple(k / 20 for k in range(2, 19)), neutral=0.0, smooth=False)
 _TAKES = replace(_parameter("takes", "by how much more pressure it takes from then on"), lower=-4.0, upper=4.0)
 _RATE = replace(_STIFFER, name="rate", upper=1.5, starts=(0.0,), doc="excess of its rate from then on", size=False)
-_WHEN = Parameter(
-    name="when",
-    kind="fraction",
-    lower=0.02,
-    upper=0.98,
-    starts=tuple(0.02 + 0.96 * (0.5 + k) / 24 for k in range(24)),
-    scale=0.2,
-    doc="when it changes, fraction of all recordings",
-    neutral=0.5,
-    smooth=False,
-    size=False,
-)
 _SNAPS = "the spring gives way at a place, and the stem snaps through"
 
 EFFECT = Effect(
@@ -216,7 +206,7 @@ EFFECT = Effect(
     "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
     "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel; "
     "step: s = stiffer travel/k width E, E = (1 + tanh(2 (xi - centre) / width)) / 2; "
-    "helper: s = stiffer travel/k max(xi - from, 0); "
+    "hardens: s = harder travel/k xi^2 / 2; helper: s = stiffer travel/k max(xi - from, 0); "
     "area_step: p (1 + larger (E - 1/2)); "
     "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring; "
     "breaks: from a time on p = (a1 + a2)/2 + takes +- (a1 - a2)/2 + (1 + rate) w/k",
@@ -232,11 +222,12 @@ EFFECT = Effect(
         Form("area_slope_and_bow", (_AREA, replace(_AREA_MID, name="area_mid")), _area_slope_and_bow),
         Form("stem_area", (_AREA,), _stem_area),
         Form("step", (_STIFFER, _CENTRE, _WIDTH), _step),
+        Form("hardens", (_HARDER,), _hardens),
         Form("helper", (_HELPS, _FROM), _helper),
         Form("area_step", (replace(_AREA, name="larger"), _CENTRE, _WIDTH), _area_step),
         Form("snaps", (_DROP, _SNAPS_AT, _STEEPER), _snaps, outside=_SNAPS),
         Form("stem_snaps", (_DROP, _SNAPS_AT, _STEEPER), _stem_snaps, outside=_SNAPS),
-        Form("breaks", (_TAKES, _RATE, _WHEN), _breaks, outside="the spring changes all at once"),
+        Form("breaks", (_TAKES, _RATE, WHEN), _breaks, outside="the spring changes all at once"),
     ),
     twins=("lvdt_nonlinearity", "flow_force"),
     absorbs=("compliance", "offset"),
@@ -246,5 +237,6 @@ EFFECT = Effect(
         "stem_bow": ("flow_force",),
         "stem_bow_and_swing": ("flow_force",),
         "stem_slope": ("flow_force",),
+        "hardens": ("flow_force",),
     },
 )
