@@ -178,7 +178,8 @@ S_MASS_NATURAL_S = S_DAMPING + 1  # the same of a mass on a spring between the s
 S_MASS_DAMPING = S_MASS_NATURAL_S + 1
 S_KINK = S_MASS_DAMPING + 1  # excess where two straight halves of the reading meet [fraction of travel]
 S_KINK_AT = S_KINK + 1  # and where that is [fraction of travel]
-S_COUNT = S_KINK_AT + 1
+S_WAVE = S_KINK_AT + 1  # one wave of a sine between the ends of travel [fraction of travel]
+S_COUNT = S_WAVE + 1
 
 FOREVER = 1e30
 

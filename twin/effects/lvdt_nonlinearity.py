@@ -18,6 +18,7 @@ from twin.slots import (
     S_SWING,
     S_TABLE,
     S_TRAVEL,
+    S_WAVE,
     S_ZERO,
     TABLE,
 )
@@ -36,6 +37,7 @@ def _parameter(name: str, doc: str) -> Parameter:
 
 
 _BOW = _parameter("bow", "excess of the reading at mid travel, fraction of travel")
+_WAVE = _parameter("wave", "amplitude of one wave of a sine, excess at a quarter of travel, fraction of travel")
 _SWING = _parameter("swing", "amplitude of the S-shaped part, excess at 21 % of travel, fraction of travel")
 
 
@@ -58,6 +60,10 @@ _LINE = Parameter(
 
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_BOW] = values[0]
+
+
+def _wave(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[S_WAVE] = values[0]
 
 
 def _swing(c: Coefficients, values: Sequence[float]) -> None:
@@ -172,6 +178,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
+    "wave: y = x + travel wave sin(2 pi xi); "
     "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: u^3 - line u; leaves_range_*: "
     "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there; "
     "kink: straight from 0 at both ends to the bend; table: straight between entries",
@@ -179,6 +186,7 @@ EFFECT = Effect(
     forms=(
         Form("bow", (_BOW,), _bow),
         Form("swing", (_SWING,), _swing),
+        Form("wave", (_WAVE,), _wave),
         Form("bow_and_swing", (_BOW, _SWING), _both),
         Form("about_open", (_bend("closed"),), _about_open),
         Form("about_closed", (_bend("open"),), _about_closed),

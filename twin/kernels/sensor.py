@@ -54,6 +54,7 @@ from twin.slots import (
     S_THRICE_S,
     S_TRAVEL,
     S_WANDER_S,
+    S_WAVE,
     S_WINDOW_S,
     S_WINDOWS,
     S_ZERO,
@@ -145,7 +146,7 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
 
 def curved(c: FloatArray) -> bool:
     """Whether the reading is anything but proportional to the position."""
-    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER, S_KINK]].any() or c[_TABLE].any())
+    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER, S_KINK, S_WAVE]].any() or c[_TABLE].any())
 
 
 def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
@@ -159,6 +160,8 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
         bend = bend + c[S_OTHER] * np.square(np.maximum(1.0 - c[S_FROM] - xi, 0.0) / (1.0 - c[S_FROM]))
     if c[S_KINK] != 0.0:
         bend = bend + c[S_KINK] * np.minimum(xi / c[S_KINK_AT], (1.0 - xi) / (1.0 - c[S_KINK_AT]))
+    if c[S_WAVE] != 0.0:
+        bend = bend + c[S_WAVE] * np.sin(2.0 * np.pi * xi)
     if c[_TABLE].any():
         bend = bend + np.interp(xi, np.linspace(0.0, 1.0, TABLE + 2), np.concatenate([[0.0], c[_TABLE], [0.0]]))
     return np.asarray(c[S_TRAVEL] * bend)
