@@ -195,7 +195,7 @@ class Form:
     doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What is `described`
     is for design models of real machines and never a candidate. What lies `outside` of the vocabulary, in these words,
     is a rival only: where it explains best, the verdict is that nothing known does. What goes through points of its
-    own is `free`, and no law.
+    own is `free`, and no law. `odds`: how common the form is, beside a usual one of its effect.
     """
 
     name: str
@@ -209,6 +209,7 @@ class Form:
     by_pressure: bool = False
     outside: str = ""
     free: bool = False
+    odds: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)

@@ -113,3 +113,15 @@ def test_a_set_holds_each_name_once_however_many_forms_of_it_come_near() -> None
     fits = [decision.accepted, near[0], apart]
     found = _sets(decision, fits, np.array([0.4, 0.3, 0.3]), Weights())
     assert found == (("additional_lag", "sensor_lag"),)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("name", "form", "value"), [("flow_force", "stem_hump", 0.25), ("nonlinear_spring", "hardens", 0.5)]
+)
+def test_a_push_between_the_ends_is_the_fluids_and_one_that_grows_is_the_springs(name, form, value) -> None:
+    one = Inserted(name, effect(name).form(form), (value,))
+    decision = settled(judged(a_record(Plant(DesignModel(), (one,))))[0].decisions[-1], DecisionRules(), Weights())
+    assert decision.names == (name,)
+    [members] = weigh(decision, Weights()).sets
+    assert set(members) >= {"flow_force", "nonlinear_spring"}

@@ -124,7 +124,8 @@ def _log_volume(fit: Fit, phi: float) -> float:
 
 
 def _log_odds(fit: Fit) -> float:
-    """Prior log-odds of the causes: each effect has its own, and where one number is wrong a further one is rare."""
+    """Prior log-odds of the causes: effects and forms have their own; where one number is wrong a further is rare."""
     numbers = sum(c.effect is None for c in fit.space.causes)
     effects = sum(np.log(c.effect.odds) for c in fit.space.causes if c.effect is not None)
+    effects += sum(np.log(c.form.odds) for c in fit.space.causes if c.form is not None)
     return float(effects + np.log(_FURTHER_NUMBER) * max(numbers - 1, 0))

@@ -196,6 +196,8 @@ _STEEPER = Parameter(
 _SNAPS_AT = replace(_CENTRE, lower=0.0, starts=tuple(k / 20 for k in range(2, 19)), neutral=0.0, smooth=False)
 _TAKES = replace(_parameter("takes", "by how much more pressure it takes from then on"), lower=-4.0, upper=4.0)
 _RATE = replace(_STIFFER, name="rate", upper=1.5, starts=(0.0,), doc="excess of its rate from then on", size=False)
+#: A spring that is right at both ends and not between, at the stem itself: mostly it is the fluid that pushes there.
+_OTHERS = 0.01
 _SNAPS = "the spring gives way at a place, and the stem snaps through"
 
 EFFECT = Effect(
@@ -214,8 +216,8 @@ EFFECT = Effect(
     forms=(
         Form("bow", (_BOW,), _bow),
         Form("bow_and_swing", (_BOW, _SWING), _bow_and_swing),
-        Form("stem_bow", (_BOW,), _stem_bow),
-        Form("stem_bow_and_swing", (_BOW, _SWING), _stem_bow_and_swing),
+        Form("stem_bow", (_BOW,), _stem_bow, odds=_OTHERS),
+        Form("stem_bow_and_swing", (_BOW, _SWING), _stem_bow_and_swing, odds=_OTHERS),
         Form("stem_slope", (_SLOPE,), _stem_slope),
         Form("area_slope", (_AREA,), _area_slope),
         Form("area_bow", (_AREA_MID,), _area_bow),
