@@ -63,7 +63,7 @@ def three_alike(decision: Decision) -> Decision:
     """A decision whose accepted cause has two rivals that leave the same and weigh the same."""
     accepted = decision.accepted
     other = {f.names[0]: f for f in decision.findings.fits if len(f.names) == 1}
-    twins = [replace(other[n], residuals=accepted.residuals, mse=accepted.mse) for n in ("reduced_travel", "creep")]
+    twins = [replace(other[n], residuals=accepted.residuals, mse=accepted.mse) for n in ("reduced_travel", "stiction")]
     findings = replace(decision.findings, fits=(accepted, *twins), yardstick=_Level())  # type: ignore[arg-type]
     return replace(decision, findings=findings)
 

@@ -11,12 +11,18 @@ from twin.choose.score import yardstick_for
 from twin.fit.fitting import Fit
 
 
-def likeliest(level: Sequence[Fit], use: np.ndarray) -> list[Fit]:
+def by_score(level: Sequence[Fit], use: np.ndarray) -> list[Fit]:
     """The hypotheses by their scores, best first: one that bends all numbers to imitate others is not likely.
 
-    Without those in which an effect has no size, if there are others: they take the credit for what their form does
-    besides, and hide what else does it. `use`: the rows that count.
+    `use`: the rows that count.
     """
-    yardstick = yardstick_for(level, use)
-    sized = [f for f in level if not hollow(f, yardstick.phi)] or level
-    return sorted(sized, key=yardstick.score, reverse=True)
+    return sorted(level, key=yardstick_for(level, use).score, reverse=True)
+
+
+def likeliest(level: Sequence[Fit], use: np.ndarray) -> list[Fit]:
+    """The same without those in which an effect has no size, if there are others.
+
+    They take the credit for what their form does besides, and hide what else does it.
+    """
+    phi = yardstick_for(level, use).phi if level else 1.0
+    return by_score([f for f in level if not hollow(f, phi)] or level, use)

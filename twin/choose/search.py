@@ -17,7 +17,7 @@ import numpy as np
 from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
-from twin.choose.likeliest import likeliest
+from twin.choose.likeliest import by_score, likeliest
 from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import Pair, promising_pairs
 from twin.choose.polish import polished
@@ -181,7 +181,7 @@ class Searcher:
         """
         todo: dict[frozenset[tuple[str, str]], tuple[tuple[Cause, ...], Fit]] = {}
         effects = effect_causes(self.channel, self.base)
-        for one in likeliest(found, self.channel.use)[: self.rules.beam] if found else []:
+        for one in by_score(found, self.channel.use)[: self.rules.beam] if found else []:
             causes = one.space.causes
             beside = [(*causes, *some) for some in suspected(one)]
             if len(causes) > 1:
