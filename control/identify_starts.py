@@ -43,7 +43,7 @@ def first_guesses(reach: Reach, cost: Callable[[FloatArray], float]) -> list[Flo
 
     One of each width, since a fit that starts without a play seldom finds one, and the cheapest few are often alike.
     """
-    best = [min((_guesses(reach, band)), key=cost) for band in (0.0, 0.1, 0.2, 0.33, 0.5)]
+    best = [min(_guesses(reach, band), key=cost) for band in (0.0, 0.1, 0.2, 0.33, 0.5)]
     open_ended = min(best, key=cost).copy()
     open_ended[TRAVEL] = NEVER
     return [*best, open_ended]

@@ -21,8 +21,6 @@ from control.identify_track import Track, reach_of, thinned
 from logs.recording import FloatArray
 
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
-
-
 SHORTEST = 0.3  # of a sub-step: a lag below it changes nothing, so that no slope would lead back from there
 
 
