@@ -24,7 +24,7 @@ def loop(deadband: float, command: FloatArray, period_s: float = 10.0) -> Record
     return Recording("loop", time_s, command, position + noise, pressure_unit="percent", position_unit="percent")
 
 
-def wandering(rows: int = 700) -> FloatArray:
+def wandering(rows: int = 550) -> FloatArray:
     """A controller's output: slow, to and fro over some 5 %."""
     rows_s = 10.0 * np.arange(rows)
     return 24.0 + 1.6 * np.sin(rows_s / 190.0) + 0.9 * np.sin(rows_s / 61.0 + 1.0)

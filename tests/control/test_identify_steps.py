@@ -13,7 +13,7 @@ from control.identify_steps import time_constant_63, together, without_lag
 from logs.recording import Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record as play
-from tests.control.toy_valve import Toy, record
+from tests.control.toy_valve import Toy, record, respond
 
 
 def test_steps_on_the_curve_give_the_time_constant() -> None:
@@ -43,7 +43,9 @@ def test_steps_into_a_stop_and_out_of_it_do_not_count() -> None:
 
 def test_rows_so_far_apart_that_no_step_shows_its_end_give_none() -> None:
     command = np.repeat([4.0, *np.arange(8.7, 11.5, 0.25)], 45)
-    coarse = record(Toy(), np.arange(command.size) * 100.0, command)
+    time_s = np.arange(command.size) * 100.0
+    pressure, position = respond(Toy(), time_s, command, step_s=0.1)
+    coarse = Recording("coarse", time_s, command, position, pressure)
     assert time_constant_63([coarse], Settling(2.7, 0.3, 0.12), 0.5625).raw_s.size == 0
 
 
