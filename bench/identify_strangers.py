@@ -42,7 +42,7 @@ class Stranger:
         return np.array([self.ep_tau_s, a1, self.a2, self.compliance, self.tau_s, self.rate, gain])
 
 
-@njit(cache=True)
+@njit(nogil=True)
 def _runs(v: FloatArray, command: FloatArray, wanted: FloatArray, steps: tuple[float, int], out: FloatArray) -> None:
     """Fills `out` with the stem, and `command` with what a PI controller makes of `wanted`, if there is one.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from bench.identify_strangers import drawn
 from control.identify import identify
 from logs.recording import FloatArray, Recording
 from tests.control.toy_valve import Toy, random_steps, respond
@@ -50,3 +51,12 @@ def test_a_lag_that_nothing_shows_is_kept_and_said() -> None:
     found = identify([recorded(valve(20.0, 0.02, 0.02), command, 5.0)])
     assert found["ep.tau"].interval is None
     assert found["deadband"].value == pytest.approx(20.0, rel=0.01)
+
+
+def test_a_wide_play_behind_sines_is_found() -> None:
+    """From starts with no play or one of half the range alone the fit ends without one, 6 times the noise off."""
+    recording, stranger, _, noise = drawn(9)
+    found = identify([recording])
+    assert found["deadband"].value == pytest.approx(stranger.deadband, rel=0.01)
+    assert found["ep.tau"].value == pytest.approx(stranger.ep_tau_s, rel=0.1)
+    assert found.quality.rms == pytest.approx(noise, rel=0.1)
