@@ -50,6 +50,7 @@ def test_a_heavy_stem_has_it_too(way: str) -> None:
     assert np.allclose(row_by_row(heavy), at_once(heavy), atol=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("way", WAYS)
 def test_a_check_valve_is_told_from_other_dampings(way: str) -> None:
     one = plant("before the lag", "asymmetric_damping", f"check_valve_{way}", (1.5, 0.15))

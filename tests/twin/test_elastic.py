@@ -43,6 +43,7 @@ def test_all_of_the_friction_behind_no_play_is_the_elastic_form() -> None:
     assert np.max(np.abs(whole - rigid)) > 0.002
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("form", "power"), [("falling_with_speed", 1), ("falling_with_speed_squared", 2)])
 def test_it_falls_with_the_speed_as_in_small_steps(form: str, power: int) -> None:
     """A stem whose friction grows as it slows down stops short; the springs hold it there."""

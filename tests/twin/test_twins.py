@@ -42,6 +42,7 @@ def test_of_twins_the_one_of_the_more_usual_size_is_named(lag_s: float, name: st
     assert weighed.sets == ((name, twin),)
 
 
+@pytest.mark.thorough
 def test_what_the_record_says_comes_first() -> None:
     decision = late(0.8)
     fits = {f.names[0]: f for f in decision.findings.fits if len(f.names) == 1}
