@@ -21,7 +21,6 @@ from control.identify_track import Track, reach_of, thinned
 from logs.recording import FloatArray
 
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
-SHORTEST = 0.3  # of a sub-step: a lag below it changes nothing, so that no slope would lead back from there
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,11 +180,10 @@ def _bounds(tracks: Sequence[Track], freedom: Freedom) -> tuple[FloatArray, Floa
     slope = reach / span
     slopes = 2 if freedom.separate else 1
     lowest = seen.p_low - span - seen.away / (0.05 * slope)
-    least_s = SHORTEST * float(np.median(tracks[0].grid.step_s[1:]))
-    low = [lowest, lowest, *[0.05 * slope] * slopes, least_s]
+    low = [lowest, lowest, *[0.05 * slope] * slopes, 1e-3]
     high = [seen.p_high + span, seen.p_high + span, *[200.0 * slope] * slopes, 300.0]
     low += [1e-4 * reach] * freedom.rate + [0.5 * top] * freedom.travel
-    low += [least_s] * freedom.ep + [-2.0 * reach] * len(tracks)
+    low += [1e-3] * freedom.ep + [-2.0 * reach] * len(tracks)
     high += [1e3 * reach] * freedom.rate + [2.0 * top] * freedom.travel
     high += [300.0] * freedom.ep + [top + 2.0 * reach] * len(tracks)
     return np.array(low), np.array(high)

@@ -54,3 +54,14 @@ def test_same_as_small_steps(load: float, below: float, above: float) -> None:
     fine = np.interp(np.interp(np.arange(grid.n_fine), grid.offsets, TIME_S), TIME_S, PRESSURE)
     x = stem_response(plant.coefficients(float(TIME_S[-1])), grid, fine, 0.0, 0.0)[grid.offsets]
     assert np.max(np.abs(x - stepped(load, below, above))) < 4e-4
+
+
+def test_no_friction_drives() -> None:
+    """A load that would make it less than nothing at the open end makes it nothing there."""
+    form = effect("friction_in_motion").form("partial_loaded")
+    shifts = []
+    for load in (0.2, 0.9):
+        plant = Plant(D, (Inserted("friction_in_motion", form, (0.1, load, 0.0, 0.0)),))
+        shifts.append(plant.coefficients(1.0).close_shift)
+    assert shifts[0][0] == pytest.approx(-0.5 * D.deadband * 0.1)
+    assert shifts[1] == pytest.approx(shifts[0])

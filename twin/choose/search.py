@@ -57,9 +57,8 @@ class SearchRules:
     stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
     restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
     hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
-    slight: float = (
-        SLIGHT  # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
-    )
+    # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
+    slight: float = SLIGHT
     scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
 

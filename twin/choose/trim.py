@@ -65,7 +65,7 @@ def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decis
         weakest = min(beliefs, key=lambda name: beliefs[name])
         if beliefs[weakest] >= LIKELY:
             break
-        smaller = _without(decision, weakest)
+        smaller = _without(decision, weakest, rules.evidence)
         if smaller is None:
             break
         rest = decision.rest_of(smaller)
@@ -89,11 +89,11 @@ def dropped(decision: Decision, name: str) -> Decision | None:
     """The decision without one of its causes, whatever that leaves; None where the others were never tried alone."""
     if decision.names == (name,):
         return silent(decision)
-    smaller = _without(decision, name)
+    smaller = _without(decision, name, DecisionRules().evidence)
     return None if smaller is None else replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
 
 
-def _without(decision: Decision, name: str) -> Fit | None:
+def _without(decision: Decision, name: str, evidence: float) -> Fit | None:
     """The best hypothesis with the other causes of the accepted one.
 
     With the numbers accused that stood for an effect while it was there: some take a number along as their own.
@@ -103,7 +103,7 @@ def _without(decision: Decision, name: str) -> Fit | None:
     best = max(fits, key=decision.findings.score, default=None)
     if best is None or name not in effects():
         return best
-    return with_numbers(decision.findings, best, DecisionRules().evidence)
+    return with_numbers(decision.findings, best, evidence)
 
 
 def spoken(decisions: Sequence[Decision], weights: Weights, seen: bool) -> tuple[Decision, ...]:

@@ -145,6 +145,7 @@ def _loaded(c: Coefficients, values: Sequence[float]) -> None:
     share, load, below, above = values
     _partial(c, values)
     if share > 0.0:
+        load = min(load, 2.0 * share)  # there is no friction that drives
         more = 0.5 * c.design.deadband * load * (c.xi - 0.5)
         c.close_shift += more
         c.open_shift -= more
@@ -180,7 +181,8 @@ EFFECT = Effect(
     "friction turns over a distance, w is held only beyond the stops, x at the stops; elastic_landing: beyond a stop "
     "that the stem lands on softly w goes on by gives times what it would; "
     "partial_elastic: as partial, with such friction and such stops; "
-    "partial_loaded: as partial, with friction in proportion to share + load (w / travel - 1/2) and such stops",
+    "partial_loaded: as partial, with friction in proportion to share + load (w / travel - 1/2), load up to 2 share, "
+    "and such stops",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; "
     "Andersson, Soderberg, Bjorklund, Tribology International 40 (2007) 580 (rounded)",
     forms=(
