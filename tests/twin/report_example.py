@@ -73,7 +73,7 @@ def diagnosis(shown: Series) -> Diagnosis:
         statement="The stem sticks: it needs 0.35 psi more to break away than to slide, and the deadband is 0.62 psi "
         "wider than the design says. With both, the model predicts held-out data to within the noise.",
         causes=(
-            Cause("stiction", "actuator", 0.96, 3.4, {"breakaway": Estimate(0.35, (0.33, 0.37), "psi")}),
+            Cause("stiction", "actuator", 0.96, 3.4, {"breakaway": Estimate(0.35, (0.33, 0.37), "psi")}, "one_jump"),
             Cause("parameter:deadband", "actuator", 0.91, 4.1, {"deadband": Estimate(3.58, (3.55, 3.61), "psi")}),
         ),
         ranking=(
@@ -110,7 +110,7 @@ def diagnosis(shown: Series) -> Diagnosis:
             EffectTest("supply_saturation", False, "the command never came near the supply pressure"),
         ),
         structure=tuple(describe(frozenset({"pressure"}))),
-        noise={"position": {"sigma": SIGMA, "correlation samples": 1.0}, "source": "repeats"},
+        noise={"position": {"sigma": SIGMA, "unit": "in", "source": "repeats", "correlation_samples": 1.0}},
         closed_loop={"limit cycle": {"predicted": 0.8, "recorded": 0.9}},
         version="0.1.0",
     )

@@ -15,6 +15,7 @@ from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Ranked, Share
 from twin.report.content import cause_rows, columns, gap_marks, ranking_rows, share_bars, top_share
 from twin.report.page import render, write_report
 from twin.report.series import Series, busiest_pressure, busiest_window, thin, thin_together
+from twin.report.signature import signature_rows
 from twin.report.story import story
 from twin.report.words import VERDICTS, number, percent
 from twin.statement import statement
@@ -69,6 +70,8 @@ def test_page_says_everything(page: str) -> None:
         "duplicate time in run 0041",
         "run 0042 ramp",
         "second position signal",
+        "pressure above the sliding curve that is needed to start",
+        "0.000800 in RMS, from repeated commands; one in 1.0 readings is independent",
     ):
         assert words in page
     assert page.count("<svg") == 4
@@ -138,15 +141,40 @@ def test_unexplained_without_pressure_and_with_missing_values(shown: Series) -> 
     blind = replace(shown, position=position, pressure=None, retuned=None, false=np.arange(position.size) % 97 == 0)
     known = diagnosis(shown)
     where = replace(known.where, stage=None, attributed=None)
-    signature = {"depends on": "time since reversal", "correlation": {"position": 0.1}}
+    signature = {"signal": "position", "rms_over_noise": 2.5, "depends_on": {"time": 0.1}}
     unclear = replace(known, verdict="unexplained", causes=(), where=where, residual_signature=signature)
     page = render(unclear, blind)
     assert "without measured pressure the stages cannot be told apart" in page
-    assert "time since reversal" in page
+    assert "the position, 2.50 times its noise" in page
     assert "command [psi]" in page
     measured = render(unclear, replace(blind, pressure=shown.pressure))
     assert "without measured pressure the stages" not in measured
     assert "No error above the floor to share out" in measured
+
+
+def test_what_is_left_is_said_in_words() -> None:
+    jump = {"what": "the zero of the reading jumps", "step": {"value": 0.01, "unit": "in"}, "share": {"value": 0.5}}
+    found = {
+        "signal": "position",
+        "rms_over_noise": 6.1234,
+        "depends_on": {"position": 0.2, "time": 0.97},
+        "repeats": 0.68,
+        "strongest_frequency_hz": 0.0054,
+        "share_at_it": 0.526,
+        "looks_like": jump,
+        "does_not_repeat": {"signal": "position", "between_repeats": 0.02, "at_rest": 0.001, "unit": "in"},
+        "swings": {"frequency_hz": 1.5, "amplitude": 0.004, "share": 0.8, "signal": "position", "unit": "in"},
+    }
+    assert signature_rows(found) == [
+        ("largest in", "the position, 6.12 times its noise (RMS)"),
+        ("goes with", "time 97 %, position 20 %"),
+        ("came back with the same commands", "68 % of its square: the rest was there once"),
+        ("strongest frequency", "0.00540 Hz, with 53 % of the power"),
+        ("looks as if", "the zero of the reading jumps (step 0.0100 in, share 0.500)"),
+        ("does not repeat", "the position: 0.0200 in between repeats, 0.00100 at rest"),
+        ("swings by itself", "the position, by 0.00400 in at 1.50 Hz as sampled: 80 % of what the design misses"),
+    ]
+    assert signature_rows({"repeats": None}) == []
 
 
 def test_bars_show_masking_and_columns_their_scale() -> None:
@@ -188,6 +216,14 @@ def test_rejected_candidates_are_shown_as_such_and_none_is_left_out(shown: Serie
     rows = ranking_rows(unclear)
     assert len(rows) == 20
     assert {row["probability"] for row in rows} == {"rejected"}
+
+
+def test_nothing_is_said_to_be_impossible_and_methods_are_those_in_use(shown: Series) -> None:
+    unlikely = replace(diagnosis(shown), ranking=(Ranked("creep", 0.0, 0.3),), causes=())
+    assert [row["probability"] for row in ranking_rows(unlikely)] == ["< 1 %"]
+    page = render(unlikely, shown)
+    assert "Fieller" in page  # twin/where/ratio.py
+    assert "bootstrap" not in page
 
 
 def test_a_cause_says_which_form_of_the_equations_it_has() -> None:

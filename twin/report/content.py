@@ -8,7 +8,10 @@ from math import ceil
 
 from twin.catalog import effects
 from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Share
-from twin.report.words import interval, name, number, percent
+from twin.report.words import SOURCES, interval, name, number, percent
+
+#: A probability that is 0 in its last digit is not impossible.
+_NEXT_TO_NOTHING = 1e-9
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,6 +124,7 @@ def cause_rows(causes: tuple[Cause, ...]) -> list[dict[str, object]]:
     rows: list[dict[str, object]] = []
     for cause in causes:
         effect = known.get(cause.name)
+        meanings = {p.name: p.doc for f in effect.forms if f.name == cause.form for p in f.parameters} if effect else {}
         rows.append(
             {
                 "name": name(cause.name),
@@ -132,7 +136,8 @@ def cause_rows(causes: tuple[Cause, ...]) -> list[dict[str, object]]:
                 "equations": effect.equations if effect else "",
                 "source": effect.source if effect else "",
                 "parameters": [
-                    (name(key), number(e.value), interval(e.ci95), _unit(e.unit)) for key, e in cause.parameters.items()
+                    (name(key), meanings.get(key, ""), number(e.value), interval(e.ci95), _unit(e.unit))
+                    for key, e in cause.parameters.items()
                 ],
             }
         )
@@ -146,7 +151,7 @@ def ranking_rows(diagnosis: Diagnosis) -> list[dict[str, object]]:
     return [
         {
             "name": name(line.name),
-            "probability": "rejected" if line.rejected else percent(line.probability),
+            "probability": "rejected" if line.rejected else percent(max(line.probability, _NEXT_TO_NOTHING)),
             "width": 100.0 * max(0.0, min(line.probability, 1.0)),
             "gap": number(line.heldout_gap),
             "named": line.name in named,
@@ -178,6 +183,19 @@ def tested_rows(diagnosis: Diagnosis) -> list[dict[str, object]]:
 
 def _unit(unit: str) -> str:
     return "" if unit == "1" else unit
+
+
+def noise_rows(noise: Mapping[str, object]) -> list[tuple[str, str]]:
+    """Per signal its noise, what that was measured from, and how long it remembers."""
+    rows = []
+    for signal, facts in noise.items():
+        if not isinstance(facts, Mapping):
+            continue
+        floor = f"{number(facts.get('sigma'))} {facts.get('unit', '')}".strip()
+        source = SOURCES.get(str(facts.get("source")), "")
+        memory = number(facts.get("correlation_samples"), 2)
+        rows.append((name(signal), f"{floor} RMS, from {source}; one in {memory} readings is independent"))
+    return rows
 
 
 def plain_rows(mapping: Mapping[str, object]) -> list[tuple[str, str]]:

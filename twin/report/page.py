@@ -12,6 +12,7 @@ from twin.report.content import (
     columns,
     confusion_lines,
     gap_marks,
+    noise_rows,
     plain_rows,
     ranking_rows,
     share_bars,
@@ -19,6 +20,7 @@ from twin.report.content import (
     top_share,
 )
 from twin.report.series import Series
+from twin.report.signature import signature_rows
 from twin.report.words import heading, interval, name, number, percent
 
 _TEMPLATE = Path(__file__).parent / "template.html.j2"
@@ -51,8 +53,8 @@ def render(diagnosis: Diagnosis, series: Series, folder: Path = _HERE) -> str:
         confusion=confusion_lines(diagnosis),
         tests=tested_rows(diagnosis),
         marks=gap_marks(diagnosis.gap),
-        signature=plain_rows(diagnosis.residual_signature),
-        noise=plain_rows(diagnosis.noise),
+        signature=signature_rows(diagnosis.residual_signature),
+        noise=noise_rows(diagnosis.noise),
         closed_loop=plain_rows(diagnosis.closed_loop),
         name=name,
         number=number,

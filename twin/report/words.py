@@ -25,9 +25,14 @@ _NAMES = {
     "parameter:tau": "design number: valve time constant",
     "parameter:rate_limit": "design number: rate limit",
     "parameter:ep_tau": "design number: E/P time constant",
-    "high_frequency": "fast changes",
+}
+#: What a noise floor was measured from.
+SOURCES = {
     "repeats": "repeated commands",
-    "still": "still",
+    "still": "still stretches",
+    "straight": "even stretches",
+    "high_frequency": "fast changes",
+    "none": "nothing that would show it",
 }
 
 
