@@ -26,6 +26,7 @@ from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, retuning_pays
 from twin.hearing import Hearing
+from twin.held_noise import as_reported, noise_of_refreshed
 from twin.heldout import tied_note
 from twin.lateness import late_commands
 from twin.moved import moved_numbers
@@ -40,7 +41,7 @@ from twin.recorder import recorder_note
 from twin.refresh import new_only, refreshed_together
 from twin.repeatable import differ_for_a_cause, leaves_what_rests
 from twin.rounding import lacking_codes, rounding_down
-from twin.sensing import Sensing, as_reported, noise_of_refreshed, sense
+from twin.sensing import Sensing, sense
 from twin.stages import StageResult, judge
 from twin.statement import signed
 from twin.thin import look_at, on_everything
@@ -118,7 +119,9 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials)
     itself = unrest(case, everything, settings.margin.position)
-    known.notes += [*itself.notes(case), *([gauge_note(case, result.denied)] if result.astray else [])]
+    missed = result.decisions[0].findings.none.mse
+    gauge = [gauge_note(case, missed, result.denied)] if result.astray else []
+    known.notes += [*itself.notes(case), *gauge]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
     hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed, itself.swing is not None)

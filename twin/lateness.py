@@ -2,7 +2,8 @@
 
 A file gives a command's time to the row at best; polling adds jitter. A delay of a small part of the sampling period,
 which together with the converter's lag accounts for all of the pressure's error, is put into the base model, so that
-nobody is blamed for it. Longer delays, and those that leave something, are left to the search.
+nobody is blamed for it. Longer delays, and those that leave something, are left to the search;
+nor is there one where another lag alone does, and the delay alone does not.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ import numpy as np
 from logs.recording import DataNote, Recording
 from twin.case import Case
 from twin.catalog import effect
-from twin.fit.channel import pressure_channel
+from twin.fit.channel import Channel, pressure_channel
 from twin.fit.fitting import fit
 from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
 from twin.plant import Inserted
@@ -39,6 +40,8 @@ def late_commands(case: Case) -> tuple[tuple[Inserted, ...], list[DataNote]]:
     with_lag = make_space(case.base, (), ("ep_tau",), case.scales, ACCUSED_SPREAD)
     with_both = make_space(case.base, (late,), ("ep_tau",), case.scales, ACCUSED_SPREAD)
     lag = fit(channel, with_lag, [np.zeros(1)])
+    if lag.mse < _BLAMED and not _does_alone(channel, case, late, lag.mse):
+        return (), []
     start = np.array([lag.z[0], 0.05 * _period_s(case.recordings) / with_both.unknowns[1].unit])
     both = fit(channel, with_both, [start])
     delay_s = float(both.values()[1])
@@ -50,6 +53,13 @@ def late_commands(case: Case) -> tuple[tuple[Inserted, ...], list[DataNote]]:
         "taken as timing of the record, not as dead time",
     )
     return (Inserted("dead_time", form, (delay_s,)),), [note]
+
+
+def _does_alone(channel: Channel, case: Case, late: Cause, least: float) -> bool:
+    """Whether the delay leaves no more than `least` with the lag of the design: of two lags, one may be shorter."""
+    space = make_space(case.base, (late,), (), case.scales)
+    start = np.array([0.05 * _period_s(case.recordings) / space.unknowns[0].unit])
+    return fit(channel, space, [start]).mse <= least
 
 
 def _period_s(recordings: Sequence[Recording]) -> float:

@@ -20,8 +20,9 @@ from twin.events.dropouts import SIGMAS
 from twin.events.evidence import Evidence
 from twin.events.scan import ON_CHANGE, Events, scan_events
 from twin.events.tails import together
+from twin.held_noise import HELD_NATS
 from twin.noise.lattice import rounding_error
-from twin.noise.model import NoiseModel, estimate_noise
+from twin.noise.model import NoiseModel
 from twin.plant import Inserted, Plant
 from twin.recorder import rounded_by_recorder
 
@@ -31,20 +32,16 @@ _LEAST_RATE = 2e-4
 _LOUD = 3.0
 #: A step is an effect when it is coarser than the noise and than this share of travel.
 _LEAST_STEP = 1e-3
-#: Held readings are an effect of their own when they are this share of all, with this much evidence [nats].
-_HELD, _HELD_NATS = 0.3, 100.0
+#: Held readings are an effect of their own when they are this share of all.
+_HELD = 0.3
 #: ... or this share, where far fewer than would by chance (this share of them) are held twice running.
 _CLOCKED, _AGAIN = 0.1, 0.5
 #: ... or this share, where so many of them are held once more in the next row.
 _HUNG, _ON = 0.02, 0.5
-#: Share of readings that repeat the one before, above which the noise is taken from the others.
-_MOSTLY_HELD = 0.4
 #: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.
 _SINGLE, _STILL_SIGMAS = 5, 5.0
 #: Bands of two recordings are one band up to this ratio.
 _ALIKE = 1.2
-#: By how much reporting on change enlarges the noise: 1 for a quick stem, and the largest of ten is 1.5.
-_FAVOURED = 1.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,7 +124,7 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if in_steps and not recorded:
         accepted["sensor_quantization"] = dict(quantization.estimates)
     stale = _strongest(events, "stale_samples")
-    if stale.found and stale.log_likelihood_ratio > _HELD_NATS and _slow_refresh(stale):
+    if stale.found and stale.log_likelihood_ratio > HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     uneven = _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0
     return Sensing(events, accepted, step, uneven, recorded=recorded)
@@ -223,28 +220,3 @@ def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: f
     reach = 2.5 * fastest * recording.period_s + 8.0 * noise.position.sigma
     far = known & (np.abs(filled - median_filter(filled, 7, mode="mirror")) > reach)
     return replace(events, false_position=events.false_position | far)
-
-
-def noise_of_refreshed(recordings: Sequence[Recording], noise: NoiseModel) -> NoiseModel:
-    """The noise with that of the position taken from fresh readings only, where most readings repeat the one before.
-
-    Repeated values look still and free of noise; `noise` is returned as it is where the readings are fresh.
-    """
-    stale = [scan_events(r, noise).evidence["stale_samples"] for r in recordings]
-    if not all(e.found and e.estimates["hold_fraction"].value > _MOSTLY_HELD for e in stale):
-        return noise
-    return replace(noise, position=estimate_noise([_fresh(r) for r in recordings]).position)
-
-
-def as_reported(noise: NoiseModel) -> NoiseModel:
-    """The noise of a position that is reported on change: it is reported when way and noise together pass the band, so
-    that noise on the way's side comes first. Of a stem that creeps past it the largest of many is reported."""
-    position = noise.position
-    return replace(noise, position=replace(position, sigma=_FAVOURED * position.sigma))
-
-
-def _fresh(recording: Recording) -> Recording:
-    """The rows whose position differs from the row before."""
-    new = np.flatnonzero(np.diff(recording.position, prepend=np.nan) != 0.0)
-    pressure = None if recording.pressure is None else recording.pressure[new]
-    return Recording(recording.name, recording.time_s[new], recording.command[new], recording.position[new], pressure)

@@ -73,17 +73,17 @@ def _denies(followed: float, other: float) -> bool:
     return followed < _FOLLOWS * other and followed < other - _CLEARLY
 
 
-def gauge_note(case: Case, against: Sequence[str] = ()) -> DataNote:
-    """What to say of it. `against`: causes that the reading has, and the stem denies."""
+def gauge_note(case: Case, missed: float, against: Sequence[str] = ()) -> DataNote:
+    """What to say of it. `missed`: mean square that the design leaves of the reading, noise = 1; `against`: causes that
+    the reading has, and the stem denies."""
     causes = " and ".join(name.removeprefix("parameter:") for name in against)
     like = f" (by itself it would be {causes})" if against else ""
-    return DataNote(
-        what=f"the pressure reading strays in a way that the stem does not follow{like}",
-        handled="taken as the gauge's own error: the position is held to the pressure that the converter's model makes "
-        "of the commands; another gauge on the same line would tell",
-        rows=sum(r.n for r in case.recordings),
-        first_row=None,
-    )
+    what = f"the pressure reading strays in a way that the stem does not follow{like}"
+    held = "the position is held to the pressure that the converter's model makes of the commands"
+    told = f"taken as the gauge's own error: {held}; another gauge on the same line would tell"
+    if missed <= SLIGHT and not against:
+        what, told = "the pressure reading is noisier than what moved the stem", f"its noise moves nothing: {held}"
+    return DataNote(what=what, handled=told, rows=sum(r.n for r in case.recordings), first_row=None)
 
 
 def left_of_position(case: Case, trials: Sequence[Trial]) -> float:

@@ -19,12 +19,13 @@ from twin.diagnose import Outcome, Settings, diagnose
 from twin.events.on_change import on_change
 from twin.fit.channel import position_channel
 from twin.fit.trial import make_trial
+from twin.held_noise import as_reported
 from twin.kernels.sensor import report_on_change
 from twin.live.twin import LiveTwin
 from twin.noise.model import estimate_noise
 from twin.plant import Inserted, Plant
 from twin.refresh import freshness
-from twin.sensing import as_reported, sense
+from twin.sensing import sense
 from twin.simulate import Start, simulate_recording
 
 DESIGN = DesignModel()

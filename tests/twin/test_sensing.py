@@ -9,9 +9,12 @@ import pytest
 
 from logs.recording import FloatArray, Recording
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
+from twin.events.scan import scan_events
+from twin.held_noise import noise_of_refreshed
 from twin.noise.model import estimate_noise
 from twin.plant import Plant
 from twin.sensing import sense
+from twin.simulate import simulate_recording
 
 SPIKE_IN = 0.010  # a stem at the rate limit goes 0.012 in between two readings
 
@@ -90,3 +93,19 @@ def test_steps_are_sharp_whatever_the_number_of_codes(codes: int) -> None:
     step_in = float(np.ptp(fine.position)) / (codes - 1)
     steps = replace(fine, position=step_in * np.round(fine.position / step_in))
     assert sense([steps], estimate_noise([steps]), DESIGN.travel, DESIGN.rate_limit).sharp
+
+
+def test_coarse_steps_of_a_slow_staircase_are_not_taken_for_held_readings() -> None:
+    """Nine steps for the whole travel repeat in most rows, and the next one is no noise of the readings."""
+    time_s = 0.04 * np.arange(9000)
+    levels = np.concatenate([np.arange(4.0, 13.0, 0.3), np.arange(13.0, 4.0, -0.3)])
+    command = levels[(time_s // 10.0).astype(int) % levels.size]
+    blank = Recording("staircase", time_s, command, np.zeros(9000), np.zeros(9000))
+    pressure, position = simulate_recording(Plant(DESIGN), blank)
+    fine = position + np.random.default_rng(1).normal(0.0, 1e-3, 9000)
+    coarse = replace(blank, pressure=pressure, position=0.06 * np.round(fine / 0.06))
+    noise = estimate_noise([coarse])
+    stale = scan_events(coarse, noise).evidence["stale_samples"]
+    assert stale.found
+    assert stale.estimates["hold_fraction"].value > 0.4
+    assert noise_of_refreshed([coarse], noise) is noise

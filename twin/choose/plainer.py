@@ -30,7 +30,21 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     # a further number has to be worth as much as any further cause
     fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
     least = min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
+    if not spares:
+        least = _with_further(findings, least, [f for f in alone if f.mse <= fit.mse + rules.gain], rules)
     return least if spares or len(least.names) == 1 else _sparing(findings, fit, least, slack)
+
+
+def _with_further(findings: Findings, least: Fit, whole: list[Fit], rules: DecisionRules) -> Fit:
+    """The numbers `least`, or the fewest of the sets `whole` that hold them and do nearly all that these leave undone.
+
+    Beside a number that is far off, what a second one does is little of the gap, and may be many times the noise.
+    """
+    larger = [f for f in whole if set(least.names) < set(f.names)]
+    least_gain = max(rules.gain, rules.trifle * (findings.none.mse - 1.0))
+    enough = [f for f in larger if least.mse - f.mse > max(least_gain, rules.complete * (least.mse - 1.0))]
+    enough = [f for f in enough if findings.score(f) - findings.score(least) > rules.evidence]
+    return min(enough, key=lambda f: (len(f.names), -findings.score(f)), default=least)
 
 
 def instead_of(findings: Findings, fit: Fit, plain: Fit, rules: DecisionRules) -> Fit:
