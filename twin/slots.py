@@ -127,7 +127,8 @@ V_MIDDLE = 61  # pressures from which that holds: of the spring at position 0, a
 V_HALF = 62
 V_STEP_EASES = 63  # share of V_STEP that is gone in the end, and with which time constant it goes [s]
 V_STEP_EASES_S = 64
-V_COUNT = 65
+V_RINGS = 65  # 1: the plays are those of elastic rings, which stay stretched at a stop
+V_COUNT = 66
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -10,7 +10,7 @@ from scipy.special import ndtri
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.kernels.elastic import stretches
-from twin.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING
+from twin.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING, V_RINGS
 
 
 def _spread(doc: str) -> tuple[Parameter]:
@@ -48,6 +48,31 @@ _PRESLIDING = Parameter(
 )
 
 _DISTANCE = replace(_PRESLIDING, name="distance", doc="distance over which friction turns, but for 1/e of it")
+
+_ELASTIC = Parameter(
+    name="elastic",
+    kind="fraction",
+    lower=0.0,
+    upper=1.0,
+    starts=(0.15, 0.5),
+    scale=0.3,
+    doc="share of the friction that rings of the packing bear which yield before they slip",
+)
+
+_LONGEST = replace(_PRESLIDING, name="longest", starts=(0.02, 0.1), doc="distance after which the last ring slips")
+_LONGEST = replace(_LONGEST, lower=0.001, neutral=0.05, size=False)
+
+_NEARER = Parameter(
+    name="nearer",
+    kind="fraction",
+    lower=0.02,
+    upper=0.98,
+    starts=(0.15, 0.5),
+    scale=0.3,
+    doc="distance after which the first ring slips, as a share of the last one's",
+    neutral=0.5,
+    size=False,
+)
 
 _SHARE = Parameter(
     name="share",
@@ -109,11 +134,36 @@ def _turns(c: Coefficients, values: Sequence[float]) -> None:
     if values[0] <= 0.0:
         return
     c.valve[V_PRESLIDING] += values[0]
-    slips, compliance, deadband = stretches(c.valve[V_PRESLIDING]), c.design.compliance, c.design.deadband
-    turned = 2.0 * slips / compliance + deadband * np.minimum(slips[:, None] / slips, 1.0).mean(axis=1)
-    still = np.append(np.cumsum(1.0 / slips[::-1])[::-1], 0.0) / slips.size
+    slips = stretches(c.valve[V_PRESLIDING])
+    _springs(c, slips, np.full(slips.size, 1.0 / slips.size))
+
+
+def _two_rings(c: Coefficients, values: Sequence[float]) -> None:
+    elastic, longest, nearer = values
+    if elastic > 0.0:
+        _springs(c, longest * np.array([nearer, 1.0]), np.full(2, 0.5 * elastic))
+
+
+def _rings(c: Coefficients, values: Sequence[float]) -> None:
+    elastic, longest = values
+    if elastic > 0.0:
+        count = PLAYS - 1
+        _springs(c, longest * (np.arange(count) + 1.0) / count, np.full(count, elastic / count))
+
+
+def _springs(c: Coefficients, slips: np.ndarray, shares: np.ndarray) -> None:
+    """The plays that springs make which bear these shares of the friction and slip when stretched so far (sorted).
+
+    What they do not bear turns at once.
+    """
+    c.valve[V_RINGS] = 1.0
+    compliance, deadband = c.design.compliance, c.design.deadband
+    rigid = deadband * (1.0 - float(shares.sum()))
+    borne = (np.minimum(slips[:, None] / slips, 1.0) * shares).sum(axis=1)
+    turned = rigid + 2.0 * slips / compliance + deadband * borne
+    still = np.append(np.cumsum((shares / slips)[::-1])[::-1], 0.0)
     gives = 1.0 / (1.0 + 0.5 * compliance * deadband * still)
-    _set(c, 0.5 * (np.append(0.0, turned) - deadband), np.diff(gives, prepend=0.0))
+    _set(c, 0.5 * (np.append(rigid, turned) - deadband), np.diff(gives, prepend=0.0))
 
 
 def _dahl(c: Coefficients, values: Sequence[float]) -> None:
@@ -141,7 +191,9 @@ EFFECT = Effect(
     claim="The hysteresis is a spread of play widths: inner reversals move the stem gradually.",
     equations="w = sum of g_j play(p; half deadband + s_j), sum of g_j = 1, sum of g_j s_j = 0; turns_over_a_distance: "
     "friction is the half deadband times the mean of z_j / q_j, springs z_j that x stretches and that slip at "
-    "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance; "
+    "q_j = presliding ((j + 1/2) / 8)^2; as plays, where the friction is not in the force balance; rings, two_rings: "
+    "springs that bear a share of it alike and slip after distances that are spaced evenly, always as plays, whose sum "
+    "a stop holds; "
     "dahl: p = offset + w/k + half deadband * F, dF/dw = (1 - F sgn(dw)) / distance; "
     "lognormal: half widths in proportion to exp(scatter z), z normal",
     source="Kuhnen, Eur. J. Control 9 (2003) 407; Brokate, Sprekels, Hysteresis and Phase Transitions (Springer 1996); "
@@ -151,6 +203,8 @@ EFFECT = Effect(
         Form("uniform", _spread("half widths spread evenly by this much about the design's"), _uniform),
         Form("partly_soft", (_SOFT,), _partly_soft),
         Form("turns_over_a_distance", (_PRESLIDING,), _turns),
+        Form("rings", (_ELASTIC, _LONGEST), _rings),
+        Form("two_rings", (_ELASTIC, _LONGEST, _NEARER), _two_rings),
         Form("dahl", (_DISTANCE,), _dahl),
         Form("two_plays", (_SHARE, *_spread("by how much the half widths of the two plays differ")), _two),
         Form("lognormal", (_SCATTER,), _lognormal),

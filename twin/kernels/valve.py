@@ -21,6 +21,7 @@ from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
 from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched
@@ -48,6 +49,7 @@ from twin.slots import (
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_RELAX,
+    V_RINGS,
     V_ROUNDED,
     V_SHORT,
     V_SQUARED_S,
@@ -164,6 +166,8 @@ def _target(
     stops = (float(c[V_LOW]), float(c[V_HIGH]))
     if c[V_DAHL] > 0.0:
         return dahl_target(force, widening, stops, tables, c[V_DAHL_HALF], c[V_DAHL], np.array([w0, np.nan]))
+    if c[V_RINGS] > 0.0:
+        return rings_target(force, widening, stops, tables, *plays, unstretched_rings(at, plays[0].size))
     return play_target(force, widening, stops, tables, *plays, at)
 
 

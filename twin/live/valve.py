@@ -12,6 +12,7 @@ from twin.kernels import valve as kernels
 from twin.kernels.dahl import dahl_target
 from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.tails import held_by_tails, unstretched
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
@@ -30,6 +31,7 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
+    V_RINGS,
     V_STRETCHED,
     V_STRETCHES,
     V_TARGET_CREEPS,
@@ -143,6 +145,7 @@ class Sliding:
         self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
         self._plays, self._w0 = (c.spreads, c.weights), w0
         self._elements: list[float] = []
+        self._rings: FloatArray | None = None
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
         self._tails = tails
         self._after = Lag(float(v[V_TAU_AFTER_S]))
@@ -164,6 +167,9 @@ class Sliding:
         if not self._elements:
             first = (float(force[0]), float(widening[0]), self._stops, self._tables, *self._plays, self._w0)
             self._elements = [common_start(*first)] * len(self._shares)
+            self._rings = unstretched_rings(self._elements[0], len(self._shares)) if self._c[V_RINGS] > 0.0 else None
+        if self._rings is not None:
+            return rings_target(force, widening, self._stops, self._tables, *self._plays, self._rings)
         target = np.zeros(force.size)
         for k, (spread, weight) in enumerate(self._shares):
             one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])

@@ -1,0 +1,120 @@
+"""Elastic rings compiled: play elements whose sum the stops hold, and not each of them.
+
+Rings of a packing that yield before they slip make the same curve as plays side by side. At a stop they stay stretched
+as they are, however far the pressure goes on, and so the plays stay where they are, too: a pressure beyond the one that
+takes the stem to its stop moves nothing. Plays that end at a stop one by one would come off it too late.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from logs.recording import FloatArray
+from twin.kernels.inputs import Tables
+
+#: Halvings of a step of the pressure in which the stem comes to its stop.
+_HALVINGS = 45
+
+
+def unstretched_rings(at: float, count: int) -> FloatArray:
+    """The state of rings not stretched with the stem `at` a place: the pressure that moved them last, the plays."""
+    return np.append(np.nan, np.full(count, at))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
+    """Linear interpolation in a uniform table, extended by its end slopes."""
+    q = (p - p_first) / p_step
+    i = min(max(int(q), 0), table.size - 2)
+    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
+    return value
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _between(at: float, tables: Tables) -> float:
+    """The pressure in the middle of the two curves at a position."""
+    first, step, closing, opening = tables
+    low, high, wide = first, first + step, step
+    while _look_up(low, first, step, closing) + _look_up(low, first, step, opening) > 2.0 * at:
+        low, wide = low - wide, 2.0 * wide
+    wide = step
+    while _look_up(high, first, step, closing) + _look_up(high, first, step, opening) < 2.0 * at:
+        high, wide = high + wide, 2.0 * wide
+    for _ in range(_HALVINGS):
+        p = 0.5 * (low + high)
+        if _look_up(p, first, step, closing) + _look_up(p, first, step, opening) < 2.0 * at:
+            low = p
+        else:
+            high = p
+    return 0.5 * (low + high)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _moved(
+    p: float, wide: float, tables: Tables, spreads: FloatArray, weights: FloatArray, state: FloatArray, new: FloatArray
+) -> float:
+    """Fills `new` with where a pressure takes the elements of `state`; returns their sum."""
+    first, step, closing, opening = tables
+    total = 0.0
+    for j in range(spreads.size):
+        band = spreads[j] + wide
+        bottom = _look_up(p - band, first, step, closing)
+        top = _look_up(p + band, first, step, opening)
+        new[j] = max(bottom, min(top, state[1 + j]))
+        total += weights[j] * new[j]
+    return total
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def rings_steps(
+    force: FloatArray,
+    widening: FloatArray,
+    stops: tuple[float, float],
+    tables: Tables,
+    spreads: FloatArray,
+    weights: FloatArray,
+    state: FloatArray,
+    out: FloatArray,
+) -> None:
+    """Fills `out` with the sum of the elements; moves `state` (see `unstretched_rings`) on."""
+    low, high = stops
+    if np.isnan(state[0]):
+        state[0] = _between(state[1], tables)
+    new, varies, stop = np.empty(spreads.size), widening.size > 1, 0
+    for f in range(force.size):
+        p = force[f]
+        if not varies and ((stop > 0 and p >= state[0]) or (stop < 0 and p <= state[0])):
+            out[f] = high if stop > 0 else low
+            continue
+        wide = widening[f if varies else 0]
+        total = _moved(p, wide, tables, spreads, weights, state, new)
+        stop = 1 if total > high else -1 if total < low else 0
+        if stop != 0:
+            inside, beyond = state[0], p
+            for _ in range(_HALVINGS):
+                p = 0.5 * (inside + beyond)
+                total = _moved(p, wide, tables, spreads, weights, state, new)
+                if total > high or total < low:
+                    beyond = p
+                else:
+                    inside = p
+            p = inside
+            total = _moved(p, wide, tables, spreads, weights, state, new)
+        state[0], state[1:] = p, new
+        out[f] = max(low, min(high, total))
+
+
+def rings_target(
+    force: FloatArray,
+    widening: FloatArray,
+    stops: tuple[float, float],
+    tables: Tables,
+    spreads: FloatArray,
+    weights: FloatArray,
+    state: FloatArray,
+) -> FloatArray:
+    """Target of the stem, shape of `force`; `state` is moved on. `widening`: see `play_target`."""
+    out = np.empty(force.size)
+    rings_steps(force, widening, stops, tables, spreads, weights, state, out)
+    return out
