@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from twin.catalog import effects
+from twin.choose.conspire import without_conspiracy
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.choose.trim import trimmed
@@ -33,7 +34,7 @@ def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
 
 def settled(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision without its unlikely causes, each of the others under its likelier name."""
-    return with_usual_twins(trimmed(decision, rules, weights), weights)
+    return with_usual_twins(without_conspiracy(trimmed(decision, rules, weights), weights), weights)
 
 
 def _of_known_size(name: str) -> bool:

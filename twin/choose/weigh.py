@@ -20,6 +20,11 @@ from twin.choose.rules import DecisionRules
 from twin.choose.usual import log_usual
 from twin.fit.fitting import Fit
 
+#: Half of all machines have a design number as designed, to the first of these (relative standard deviations), the
+#: other half to the second; what is off by no more than so many standard errors is not off.
+_AS_DESIGNED, _ABOUT, _ERRORS = 0.0015, 0.01, 2.0
+#: Nats that this is worth at the most: nobody knows machines so well.
+_COINCIDENCE = 3.0
 #: Nats that a further wrong number has to be worth to count as a hypothesis of its own.
 _COMPANION = 3.0
 
@@ -53,7 +58,7 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     scores = np.array([decision.findings.score(f) for f in fits])
     scores = np.minimum(scores, decision.findings.score(decision.accepted))
     odds = np.exp((scores - scores.max()) / weights.temperature)
-    odds *= np.exp([_usual(decision.accepted, f) for f in fits])
+    odds *= np.exp([_usual(decision.accepted, f, decision.findings.phi) for f in fits])
     odds /= odds.sum()
     names = sorted({name for f in fits for name in f.names})
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
@@ -74,14 +79,36 @@ def leading(decision: Decision) -> str | None:
     return min(alone, key=lambda f: f.mse).names[0] if alone else None
 
 
-def _usual(accepted: Fit, fit: Fit) -> float:
-    """What the size of a twin that stands in the place of an accepted cause has for itself, in nats.
+def _usual(accepted: Fit, fit: Fit, phi: float) -> float:
+    """What a twin that stands in the place of an accepted cause has for itself, in nats: its size, and numbers as
+    designed.
 
     Whatever stands beside it, lest a twin beside another rival weigh more than beside the accepted cause.
     """
     gone = [name for name in accepted.names if name not in fit.names]
     pairs = [(name, twin) for name in gone for twin in twins_of(accepted, name) if twin in fit.names]
-    return sum(log_usual(fit, twin) - log_usual(accepted, name) for name, twin in pairs)
+    usual = sum(log_usual(fit, twin) - log_usual(accepted, name) for name, twin in pairs)
+    return usual - (max(conspiracy(fit, accepted, phi), 0.0) if _in_the_place(fit, accepted) else 0.0)
+
+
+def _in_the_place(fit: Fit, accepted: Fit) -> bool:
+    """Whether a hypothesis is the accepted one with a twin in the place of one of its effects."""
+    effects = [c.effect for c in accepted.space.causes if c.effect is not None]
+    return any(stands_in(fit, accepted, e.name, twin) for e in effects for twin in e.twins)
+
+
+def conspiracy(fit: Fit, other: Fit, phi: float) -> float:
+    """How many nats speak against `fit`, which needs numbers to be off that `other` leaves as designed."""
+    return float(np.clip(_log_designed(other, phi) - _log_designed(fit, phi), -_COINCIDENCE, _COINCIDENCE))
+
+
+def _log_designed(fit: Fit, phi: float) -> float:
+    """Log-density of what the design numbers that are not accused are off by."""
+    errors = np.sqrt(np.maximum(phi * np.diag(fit.covariance()), 0.0)) if fit.z.size else np.zeros(0)
+    beside = [k for k, n in enumerate(fit.space.numbers) if f"parameter:{n}" not in fit.names]
+    off = np.maximum(np.abs(fit.z[beside]) - _ERRORS * errors[beside], 0.0)
+    widths = np.array([_AS_DESIGNED, _ABOUT])[:, None]
+    return float(np.log(np.sum(np.exp(-0.5 * (off / widths) ** 2) / widths, axis=0)).sum())
 
 
 def stands_in(fit: Fit, accepted: Fit, name: str, twin: str) -> bool:

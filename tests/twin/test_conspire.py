@@ -1,0 +1,56 @@
+"""A cause that imitates another only with design numbers off just so: a gain with a compliance, for a stop."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+from control.design import DesignModel
+from tests.twin.judged import a_record, judged
+from twin.catalog import effect
+from twin.choose.conspire import without_conspiracy
+from twin.choose.decide import Decision
+from twin.choose.weigh import Weights, conspiracy, weigh
+from twin.fit.fitting import Fit
+from twin.plant import Inserted, Plant
+
+STOP, GAIN = "reduced_travel", "lvdt_calibration"
+
+
+@cache
+def stopped_short() -> Decision:
+    short = Inserted(STOP, effect(STOP).form("upper_stop"), (0.008,))
+    return judged(a_record(Plant(DesignModel(), (short,))))[0].decisions[-1]
+
+
+def alone(decision: Decision, name: str) -> Fit:
+    return next(f for f in decision.findings.fits if f.names == (name,))
+
+
+def behind_by(nats: float) -> Decision:
+    """The decision for the gain, which has the better evidence by so much."""
+    decision = stopped_short()
+    stop, gain = alone(decision, STOP), alone(decision, GAIN)
+    lead = decision.findings.score(gain) - decision.findings.score(stop)
+    worse = replace(stop, prior=stop.prior + 2.0 * (lead + nats))
+    fits = tuple(worse if f is stop else f for f in decision.findings.fits)
+    return replace(decision, accepted=gain, findings=replace(decision.findings, fits=fits))
+
+
+def test_a_gain_needs_a_compliance_that_is_off_by_as_much() -> None:
+    decision = stopped_short()
+    stop, gain, phi = alone(decision, STOP), alone(decision, GAIN), decision.findings.phi
+    assert 1.0 < conspiracy(gain, stop, phi) <= 3.0
+    assert conspiracy(stop, gain, phi) == -conspiracy(gain, stop, phi)
+
+
+@pytest.mark.parametrize(("nats", "named"), [(0.0, STOP), (8.0, STOP), (60.0, GAIN)])
+def test_the_twin_that_leaves_the_numbers_alone_is_named_unless_the_record_says_more(nats: float, named: str) -> None:
+    assert without_conspiracy(behind_by(nats), Weights()).names == (named,)
+
+
+def test_the_coincidence_counts_in_the_probability() -> None:
+    found = weigh(without_conspiracy(behind_by(1.0), Weights()), Weights()).probability
+    assert 0.03 < found[GAIN] < 0.3 < found[STOP]
