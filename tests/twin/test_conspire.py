@@ -12,6 +12,7 @@ from tests.twin.judged import a_record, judged
 from twin.catalog import effect
 from twin.choose.conspire import without_conspiracy
 from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, weigh
 from twin.fit.fitting import Fit
 from twin.plant import Inserted, Plant
@@ -48,9 +49,16 @@ def test_a_gain_needs_a_compliance_that_is_off_by_as_much() -> None:
 
 @pytest.mark.parametrize(("nats", "named"), [(0.0, STOP), (8.0, STOP), (60.0, GAIN)])
 def test_the_twin_that_leaves_the_numbers_alone_is_named_unless_the_record_says_more(nats: float, named: str) -> None:
-    assert without_conspiracy(behind_by(nats), Weights()).names == (named,)
+    assert without_conspiracy(behind_by(nats), DecisionRules(), Weights()).names == (named,)
+
+
+def test_a_twin_that_leaves_more_does_not_do_the_same() -> None:
+    decision = behind_by(0.0)
+    fits = tuple(replace(f, mse=f.mse + 0.06) if f.names == (STOP,) else f for f in decision.findings.fits)
+    worse = replace(decision, findings=replace(decision.findings, fits=fits))
+    assert without_conspiracy(worse, DecisionRules(), Weights()).names == (GAIN,)
 
 
 def test_the_coincidence_counts_in_the_probability() -> None:
-    found = weigh(without_conspiracy(behind_by(1.0), Weights()), Weights()).probability
+    found = weigh(without_conspiracy(behind_by(1.0), DecisionRules(), Weights()), Weights()).probability
     assert 0.03 < found[GAIN] < 0.3 < found[STOP]

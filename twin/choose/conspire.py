@@ -11,15 +11,17 @@ from __future__ import annotations
 from dataclasses import replace
 
 from twin.choose.decide import Decision
+from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, stands_in
 from twin.fit.fitting import Fit
 
 
-def without_conspiracy(decision: Decision, weights: Weights) -> Decision:
+def without_conspiracy(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision with each cause replaced by its twin where only the latter leaves the design's numbers alone."""
     for cause in decision.accepted.space.causes if decision.explained else ():
         twins = cause.effect.twins if cause.effect is not None else ()
-        rivals = [f for f in decision.findings.fits for t in twins if stands_in(f, decision.accepted, cause.name, t)]
+        same = [f for f in decision.findings.fits if f.mse <= decision.accepted.mse + rules.plain]
+        rivals = [f for f in same for twin in twins if stands_in(f, decision.accepted, cause.name, twin)]
         best = max(rivals, key=decision.findings.score, default=None)
         if best is not None and _likelier(decision, best, weights):
             decision = replace(decision, accepted=best, rest=decision.rest_of(best))

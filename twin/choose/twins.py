@@ -34,7 +34,7 @@ def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
 
 def settled(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision without its unlikely causes, each of the others under its likelier name."""
-    return with_usual_twins(without_conspiracy(trimmed(decision, rules, weights), weights), weights)
+    return with_usual_twins(without_conspiracy(trimmed(decision, rules, weights), rules, weights), weights)
 
 
 def _of_known_size(name: str) -> bool:
