@@ -62,3 +62,11 @@ def test_a_twin_that_leaves_more_does_not_do_the_same() -> None:
 def test_the_coincidence_counts_in_the_probability() -> None:
     found = weigh(without_conspiracy(behind_by(1.0), DecisionRules(), Weights()), Weights()).probability
     assert 0.03 < found[GAIN] < 0.3 < found[STOP]
+
+
+def test_numbers_that_are_off_by_any_amount_are_worth_no_more_than_some_nats() -> None:
+    decision = stopped_short()
+    stop, phi = alone(decision, STOP), decision.findings.phi
+    far, farther = (replace(stop, z=stop.z + shift) for shift in (5.0, 50.0))
+    assert conspiracy(far, stop, phi) == 3.0
+    assert abs(conspiracy(farther, far, phi)) == 3.0

@@ -92,9 +92,10 @@ def _usual(accepted: Fit, fit: Fit, phi: float) -> float:
 
 
 def _in_the_place(fit: Fit, accepted: Fit) -> bool:
-    """Whether a hypothesis is the accepted one with a twin in the place of one of its effects."""
-    effects = [c.effect for c in accepted.space.causes if c.effect is not None]
-    return any(stands_in(fit, accepted, e.name, twin) for e in effects for twin in e.twins)
+    """Whether a hypothesis is the accepted one with twins in the place of some of its effects."""
+    gone, new = [c for c in accepted.space.causes if c.name not in fit.names], set(fit.names) - set(accepted.names)
+    twins = [set(c.effect.twins) if c.effect is not None else set() for c in gone]
+    return bool(gone) and len(new) == len(gone) and all(new & some for some in twins)
 
 
 def conspiracy(fit: Fit, other: Fit, phi: float) -> float:
@@ -107,8 +108,8 @@ def _log_designed(fit: Fit, phi: float) -> float:
     errors = np.sqrt(np.maximum(phi * np.diag(fit.covariance()), 0.0)) if fit.z.size else np.zeros(0)
     beside = [k for k, n in enumerate(fit.space.numbers) if f"parameter:{n}" not in fit.names]
     off = np.maximum(np.abs(fit.z[beside]) - _ERRORS * errors[beside], 0.0)
-    widths = np.array([_AS_DESIGNED, _ABOUT])[:, None]
-    return float(np.log(np.sum(np.exp(-0.5 * (off / widths) ** 2) / widths, axis=0)).sum())
+    spike, slab = (-0.5 * (off / width) ** 2 - np.log(width) for width in (_AS_DESIGNED, _ABOUT))
+    return float(np.logaddexp(spike, slab).sum())
 
 
 def stands_in(fit: Fit, accepted: Fit, name: str, twin: str) -> bool:

@@ -2,7 +2,8 @@
 
 Rings of a packing that yield before they slip make the same curve as plays side by side. At a stop they stay stretched
 as they are, however far the pressure goes on, and so the plays stay where they are, too: a pressure beyond the one that
-takes the stem to its stop moves nothing. Plays that end at a stop one by one would come off it too late.
+takes the stem to its stop moves nothing. Plays that end at a stop one by one would come off it too late. The look-up
+stands here once more on purpose: see `coupled.py`.
 """
 
 from __future__ import annotations
