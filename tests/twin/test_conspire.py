@@ -13,6 +13,7 @@ from twin.catalog import effect
 from twin.choose.conspire import without_conspiracy
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
+from twin.choose.twins import settled
 from twin.choose.weigh import Weights, conspiracy, weigh
 from twin.fit.fitting import Fit
 from twin.plant import Inserted, Plant
@@ -50,6 +51,10 @@ def test_a_gain_needs_a_compliance_that_is_off_by_as_much() -> None:
 @pytest.mark.parametrize(("nats", "named"), [(0.0, STOP), (8.0, STOP), (60.0, GAIN)])
 def test_the_twin_that_leaves_the_numbers_alone_is_named_unless_the_record_says_more(nats: float, named: str) -> None:
     assert without_conspiracy(behind_by(nats), DecisionRules(), Weights()).names == (named,)
+
+
+def test_a_settled_decision_has_no_cause_that_needs_such_a_coincidence() -> None:
+    assert settled(behind_by(1.0), DecisionRules(), Weights()).names == (STOP,)
 
 
 def test_a_twin_that_leaves_more_does_not_do_the_same() -> None:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
+from twin.choose.plainer import plainer
+from twin.choose.rules import DecisionRules
 from twin.plant import Plant
 
 
@@ -18,3 +22,7 @@ def test_a_second_number_beside_one_that_is_far_off_is_named() -> None:
     findings = result.decisions[-1].findings
     one = next(f for f in findings.fits if f.names == ("parameter:offset",))
     assert one.mse - 1.0 < 0.005 * findings.none.mse
+    # numbers alone are no cause that spares numbers, wherever re-tuning all of them has ended
+    astray = replace(findings, retuned=replace(findings.retuned, mse=1e6))
+    both = next(f for f in findings.fits if f.names == ("parameter:offset", "parameter:tau"))
+    assert plainer(astray, both, DecisionRules()).names == both.names

@@ -30,7 +30,7 @@ def plainer(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     # a further number has to be worth as much as any further cause
     fewer = [f for f in alone if set(f.names) < set(least.names) and f.mse <= least.mse + rules.gain]
     least = min(fewer, key=lambda f: (len(f.names), -findings.score(f)), default=least)
-    if not spares:
+    if not spares or not effects_of(fit):
         least = _with_further(findings, least, [f for f in alone if f.mse <= fit.mse + rules.gain], rules)
     return least if spares or len(least.names) == 1 else _sparing(findings, fit, least, slack)
 

@@ -16,6 +16,8 @@ from twin.kernels.inputs import Tables
 
 #: Halvings of a step of the pressure in which the stem comes to its stop.
 _HALVINGS = 45
+#: Doublings of a way beyond the ends of a step of the table, by which its curves have passed any position.
+_DOUBLINGS = 24
 
 
 def unstretched_rings(at: float, count: int) -> FloatArray:
@@ -37,11 +39,12 @@ def _between(at: float, tables: Tables) -> float:
     """The pressure in the middle of the two curves at a position."""
     first, step, closing, opening = tables
     low, high, wide = first, first + step, step
-    while _look_up(low, first, step, closing) + _look_up(low, first, step, opening) > 2.0 * at:
-        low, wide = low - wide, 2.0 * wide
-    wide = step
-    while _look_up(high, first, step, closing) + _look_up(high, first, step, opening) < 2.0 * at:
-        high, wide = high + wide, 2.0 * wide
+    for _ in range(_DOUBLINGS):  # never without end: nobody could stop a loop that is compiled
+        if _look_up(low, first, step, closing) + _look_up(low, first, step, opening) > 2.0 * at:
+            low -= wide
+        if _look_up(high, first, step, closing) + _look_up(high, first, step, opening) < 2.0 * at:
+            high += wide
+        wide *= 2.0
     for _ in range(_HALVINGS):
         p = 0.5 * (low + high)
         if _look_up(p, first, step, closing) + _look_up(p, first, step, opening) < 2.0 * at:
@@ -68,7 +71,7 @@ def _moved(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def rings_steps(
+def rings_target(
     force: FloatArray,
     widening: FloatArray,
     stops: tuple[float, float],
@@ -76,10 +79,13 @@ def rings_steps(
     spreads: FloatArray,
     weights: FloatArray,
     state: FloatArray,
-    out: FloatArray,
-) -> None:
-    """Fills `out` with the sum of the elements; moves `state` (see `unstretched_rings`) on."""
+) -> FloatArray:
+    """Target of the stem: the sum of the elements, shape of `force`; moves `state` (see `unstretched_rings`) on.
+
+    `widening`: see `play_target`.
+    """
     low, high = stops
+    out = np.empty(force.size)
     if np.isnan(state[0]):
         state[0] = _between(state[1], tables)
     new, varies, stop = np.empty(spreads.size), widening.size > 1, 0
@@ -104,18 +110,4 @@ def rings_steps(
             total = _moved(p, wide, tables, spreads, weights, state, new)
         state[0], state[1:] = p, new
         out[f] = max(low, min(high, total))
-
-
-def rings_target(
-    force: FloatArray,
-    widening: FloatArray,
-    stops: tuple[float, float],
-    tables: Tables,
-    spreads: FloatArray,
-    weights: FloatArray,
-    state: FloatArray,
-) -> FloatArray:
-    """Target of the stem, shape of `force`; `state` is moved on. `widening`: see `play_target`."""
-    out = np.empty(force.size)
-    rings_steps(force, widening, stops, tables, spreads, weights, state, out)
     return out
