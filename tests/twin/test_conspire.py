@@ -18,6 +18,8 @@ from twin.choose.weigh import Weights, conspiracy, weigh
 from twin.fit.fitting import Fit
 from twin.plant import Inserted, Plant
 
+#: The search that they share takes seconds.
+pytestmark = pytest.mark.thorough
 STOP, GAIN = "reduced_travel", "lvdt_calibration"
 
 
