@@ -46,6 +46,11 @@ def bow(w: float) -> float:
     return 0.4 * 4.0 * (w / TRAVEL) * (1.0 - w / TRAVEL)
 
 
+def peak(w: float) -> float:
+    opening = 1.0 - w / TRAVEL
+    return 0.4 * 8.0 * opening * (1.0 - opening) ** 2
+
+
 def spot(w: float) -> float:
     return 0.3 * float(np.exp(-0.5 * ((w / TRAVEL - 0.5) / 0.15) ** 2))
 
@@ -118,6 +123,8 @@ SAME = {
     ),
     "flow_at_stem": (plant_with("flow_force", "stem_square", 0.4), PlainValve(push=lambda x: 0.4 * (x / TRAVEL) ** 2)),
     "flow_hump": (plant_with("flow_force", "stem_hump", 0.4), PlainValve(push=bow)),
+    "flow_peak": (plant_with("flow_force", "stem_peak", 0.4, 1.0), PlainValve(push=peak)),
+    "peak": (plant_with("flow_force", "peak", 0.4, 1.0), PlainValve(bend=peak)),
     "spring_at_stem": (plant_with("nonlinear_spring", "stem_bow", 0.4), PlainValve(push=bow)),
     "soft_at_stem": (plant_with("nonlinear_spring", "stem_slope", 0.3), PlainValve(stretch=softer)),
     "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),

@@ -118,10 +118,17 @@ def test_a_set_holds_each_name_once_however_many_forms_of_it_come_near() -> None
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(
-    ("name", "form", "value"), [("flow_force", "stem_hump", 0.25), ("nonlinear_spring", "hardens", 0.5)]
+    ("name", "form", "values"),
+    [
+        ("flow_force", "stem_hump", (0.25,)),
+        ("flow_force", "peak", (0.25, 0.9)),
+        ("flow_force", "stem_peak", (-0.25, -0.9)),
+        ("nonlinear_spring", "hardens", (0.5,)),
+        ("nonlinear_spring", "bow_and_swing", (0.05, 0.2)),
+    ],
 )
-def test_a_push_between_the_ends_is_the_fluids_and_one_that_grows_is_the_springs(name, form, value) -> None:
-    one = Inserted(name, effect(name).form(form), (value,))
+def test_a_push_between_the_ends_is_the_fluids_and_one_that_grows_or_turns_is_the_springs(name, form, values) -> None:
+    one = Inserted(name, effect(name).form(form), values)
     decision = settled(judged(a_record(Plant(DesignModel(), (one,))))[0].decisions[-1], DecisionRules(), Weights())
     assert decision.names == (name,)
     [members] = weigh(decision, Weights()).sets
