@@ -16,7 +16,7 @@ from typing import Literal
 import numpy as np
 
 from control.design import DesignModel
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.place import Place
 from twin.slots import GRID, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW, neutral_ep, neutral_sensor, neutral_valve
 
@@ -179,16 +179,14 @@ class Coefficients:
 
 
 Apply = Callable[[Coefficients, Sequence[float]], None]
-#: Times and readings of each recording.
-Readings = Sequence[tuple[FloatArray, FloatArray]]
-StartsFor = Callable[[Readings, Scales], Sequence[tuple[float, ...]]]
+StartsFor = Callable[[Sequence[Recording], Scales], Sequence[tuple[float, ...]]]
 
 
 @dataclass(frozen=True, slots=True)
 class Form:
     """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units.
 
-    `starts_for(readings, scales)` gives the values (in record units) that a fit to these recordings tries first, where
+    `starts_for(records, scales)` gives the values (in record units) that a fit to these recordings tries first, where
     the parameters' own starts would be too many or too coarse. What happens `once` is no candidate for several
     recordings, in which it would have had to happen alike; what each recording has `apart` is one for two of them up
     to so many. What is `seen` goes by the recorded readings' own refresh, and is a candidate only where that is beyond

@@ -57,7 +57,11 @@ EP_CLOG_UP = 37  # what a clogged passage adds to the lag of a rising pressure, 
 EP_CLOG_DOWN = 38  # and of a falling one
 EP_SHUT = 39  # error at which a pilot that has opened shuts again, as a share of EP_BAND (EP_BAND_MODE 5) [-]
 EP_TANK_CUTS = 40  # 1: the sunk supply cuts the pressure off, as EP_CLIP does; 0: it is what the lag aims at
-EP_COUNT = 41
+EP_SWINGS_S = 41  # period with which the supply swings [s]; 0: it does not
+EP_SWING_COS = 42  # by how much it is higher at the beginning of a recording [pressure]
+EP_SWING_SIN = 43  # and a quarter of the period later
+EP_CUT = 44  # supply that swings so and cuts the pressure off, as EP_CLIP does one that does not [pressure]
+EP_COUNT = 45
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -204,7 +208,7 @@ def neutral_ep() -> FloatArray:
 def _ep() -> FloatArray:
     c = np.zeros(EP_COUNT)
     c[[EP_GAIN, EP_REFILL_S, EP_PORT_UP, EP_PORT_DOWN, EP_DRIFTS_S]] = 1.0
-    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
+    c[[EP_RATE_UP, EP_RATE_DOWN, EP_SUPPLY, EP_CLIP, EP_CUT, EP_TANK, EP_FULL_UP, EP_FULL_DOWN, EP_SLEW]] = FOREVER
     return c
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from control.design import DesignModel
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.catalog import effect
 from twin.effect import Scales
 from twin.plant import Inserted, Plant, pressure_response, reading_response, stem_response
@@ -38,7 +38,8 @@ def test_period_is_known_well_enough_to_keep_step(period_s: float, phase: float,
 def test_starts_of_the_effect_hold_the_period_and_the_phase() -> None:
     form = effect("stale_samples").forms[0]
     assert form.starts_for is not None
-    starts = form.starts_for([held_reading(0.37, 0.6, 2e-4)], Scales())
+    time_s, reading = held_reading(0.37, 0.6, 2e-4)
+    starts = form.starts_for([Recording("valve", time_s, np.zeros(time_s.size), reading)], Scales())
     near = [p for period, p in starts if abs(period - 0.37) < 1e-3]
     assert min(abs((p - 0.6 + 0.5) % 1.0 - 0.5) for p in near) < 0.1
     assert all(0.0 <= p < 1.0 for _, p in starts)

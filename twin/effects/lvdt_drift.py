@@ -8,8 +8,8 @@ from functools import cache
 
 import numpy as np
 
-from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from logs.recording import FloatArray, Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import WHEN
 from twin.slots import (
     KNOTS,
@@ -180,10 +180,9 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
     _step(c, values[0], values[1] - (c.place.within_s if c.place is not None else 0.0))
 
 
-def _instants(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+def _instants(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """All along the first recording, up and down."""
-    time_s, _ = readings[0]
-    size, whole_s = 0.005 * scales.position, float(time_s[-1] - time_s[0])
+    size, whole_s = 0.005 * scales.position, records[0].duration_s
     return [(zero, (0.5 + k) / _LOOKS * whole_s) for k in range(_LOOKS) for zero in (size, -size)]
 
 

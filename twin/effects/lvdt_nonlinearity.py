@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from logs.recording import Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.slots import (
     S_AT_OPEN,
     S_BOW,
@@ -168,7 +169,7 @@ def _table(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_TABLE : S_TABLE + TABLE] = values
 
 
-def _uneven(_readings: Readings, _scales: Scales) -> list[tuple[float, ...]]:
+def _uneven(_records: Sequence[Recording], _scales: Scales) -> list[tuple[float, ...]]:
     """Every second entry too high: from there a least squares finds all of them."""
     return [tuple(0.005 if k % 2 == odd else -0.005 for k in range(TABLE)) for odd in (0, 1)]
 

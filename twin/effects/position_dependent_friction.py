@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from logs.recording import FloatArray, Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import CENTRE, WIDTH, bow, bump, detrended, edge
 
 #: Length of the raised end, as a fraction of travel.
@@ -115,7 +115,7 @@ def _profile(c: Coefficients, values: Sequence[float]) -> None:
     _widen(c, np.interp(c.xi, KNOTS, values))
 
 
-def _profile_starts(_readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
+def _profile_starts(_records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """Small bumps in turn: from there a smooth response is fitted in any direction."""
     size = 0.01 * scales.pressure
     return [tuple(size if k % 2 == odd else -size for k in range(len(KNOTS))) for odd in (0, 1)]

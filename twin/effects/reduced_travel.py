@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from control.design import DesignModel
-from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from logs.recording import FloatArray, Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
 
 _ANYWHERE = (-0.01, 0.005, 0.04, 0.15, 0.35)
@@ -17,24 +17,24 @@ _TRAVEL_IN = DesignModel().travel  # of the valve that scales refer to
 _BEYOND = 0.002
 
 
-def _reached(readings: Readings, scales: Scales, closed: bool) -> list[tuple[float, ...]]:
+def _reached(records: Sequence[Recording], scales: Scales, closed: bool) -> list[tuple[float, ...]]:
     """Just within the furthest that was read, and anywhere.
 
     A stop beyond that does nothing, and for one far within it all else bends to make up.
     """
-    read = np.concatenate([reading[np.isfinite(reading)] for _, reading in readings])
+    read = np.concatenate([r.position[np.isfinite(r.position)] for r in records])
     share = np.quantile(read, 1.0 - _BEYOND if closed else _BEYOND) / (_TRAVEL_IN * scales.position)
     furthest = 1.0 - share if closed else share
     near = [furthest + more for more in (0.002, 0.01) if -0.2 < furthest + more < 0.8]
     return [*((value,) for value in near), *((value,) for value in _ANYWHERE)]
 
 
-def _closed(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
-    return _reached(readings, scales, closed=True)
+def _closed(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
+    return _reached(records, scales, closed=True)
 
 
-def _open(readings: Readings, scales: Scales) -> list[tuple[float, ...]]:
-    return _reached(readings, scales, closed=False)
+def _open(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
+    return _reached(records, scales, closed=False)
 
 
 def _missing(doc: str) -> tuple[Parameter]:

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.effect import Coefficients, Effect, Form, Parameter, Readings, Scales
+from logs.recording import Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.refresh import refreshes
 from twin.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_LATE_S, S_SEEN
 
@@ -72,16 +73,16 @@ def _buffered(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_LATE_S] = values[1]
 
 
-def _waits(readings: Readings, _scales: Scales) -> list[tuple[float, ...]]:
+def _waits(records: Sequence[Recording], _scales: Scales) -> list[tuple[float, ...]]:
     """One and two refreshes of waiting."""
-    time_s, reading = readings[0]
+    time_s, reading = records[0].time_s, records[0].position
     changes = time_s[np.flatnonzero(np.diff(reading) != 0.0)]
     return [(0.5, k * float(np.median(np.diff(changes)))) for k in (1, 2)] if changes.size > 2 else []
 
 
-def _seen(readings: Readings, _scales: Scales) -> list[tuple[float, ...]]:
+def _seen(records: Sequence[Recording], _scales: Scales) -> list[tuple[float, ...]]:
     """The periods and phases that the reading's lateness suggests; between two rows any phase is as good."""
-    time_s, reading = readings[0]
+    time_s, reading = records[0].time_s, records[0].position
     starts: list[tuple[float, ...]] = []
     row_s = float(np.median(np.diff(time_s)))
     for one in refreshes(time_s, reading):

@@ -171,7 +171,7 @@ def form_starts(
     its starts from the `records` is asked first.
     """
     if form.starts_for is not None and records:
-        own = form.starts_for([(r.time_s, r.position) for r in records], scales)
+        own = form.starts_for(records, scales)
         if own:
             return [_in_z(form, values, scales) for values in own]
     starts: list[list[float]] = [[]]

@@ -118,12 +118,16 @@ def follow_bounded(
     offsets: np.ndarray,
     goal: FloatArray,
     c: FloatArray,
+    highest: FloatArray,
     p0: float,
     state: FloatArray,
     out: FloatArray,
 ) -> None:
-    """A lag toward the goal with an overlap band and limited slope; kept: `state` (2,), how far the supply has sunk and
-    whether a pilot that shuts later than it opens is open."""
+    """A lag toward the goal with an overlap band and limited slope, below the `highest` there is, of size 1 or fine.
+
+    Kept: `state` (2,), how far the supply has sunk and whether a pilot that shuts later than it opens is open.
+    """
+    even = highest.size == 1
     per_row, cuts = goal.size == time_s.size, c[EP_TANK_CUTS] > 0.0
     p = p0
     out[0] = p
@@ -133,7 +137,7 @@ def follow_bounded(
             v, tank = goal[i] if per_row else goal[f], c[EP_TANK] - state[0]
             v = v if cuts else min(v, tank)
             new = _gated_step(p, v, h, c, state) if c[EP_BAND_MODE] == 5.0 else _bounded_step(p, v, h, c)
-            new = min(new, tank) if cuts else new
+            new = min(new, tank if cuts else FOREVER, highest[0 if even else f])
             if c[EP_TANK] < FOREVER:
                 state[0] = state[0] * np.exp(-h / c[EP_REFILL_S]) + c[EP_DRAW] * max(new - p, 0.0)
             p = new

@@ -14,6 +14,7 @@ from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.stroke import struck
+from twin.kernels.supply import cut, supplied, supply, zero
 from twin.slots import (
     EP_AIR,
     EP_BAND,
@@ -22,13 +23,12 @@ from twin.slots import (
     EP_CLIP,
     EP_CLOG_DOWN,
     EP_CLOG_UP,
+    EP_CUT,
     EP_DEAD_S,
     EP_DRIFTS,
-    EP_DRIFTS_S,
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
-    EP_KNEE,
     EP_MIXED_S,
     EP_NOMINAL,
     EP_PORT_DOWN,
@@ -67,7 +67,7 @@ def ep_kernel(
         where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
         booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
     elif bounded(c):
-        follow_bounded(time_s, offsets, goal, c, p0, np.zeros(2), out)
+        follow_bounded(time_s, offsets, goal, c, cut(c, time_s, offsets, time_s[0]), p0, np.zeros(2), out)
     else:
         follow(time_s, offsets, goal, c, p0, out)
     if c[EP_STROKE] != 0.0 and stem is not None:
@@ -87,7 +87,8 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         source, goal = goal, np.empty(goal.size)
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER or c[EP_DRIFTS] != 0.0:
-        goal = supplied(zero(c, time_s, offsets, goal.size, time_s[0]) + c[EP_GAIN] * goal, c)
+        most = supply(c, time_s, offsets, goal.size, time_s[0])
+        goal = supplied(zero(c, time_s, offsets, goal.size, time_s[0]) + c[EP_GAIN] * goal, most, c)
     if c[EP_SLEW] < FOREVER:
         source, goal = goal, np.empty(size)
         _slewed(time_s, source, offsets, c[EP_SLEW], p0, goal)
@@ -95,23 +96,6 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         source, goal = goal, np.empty(size)
         ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
     return goal
-
-
-def zero(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, size: int, began_s: float) -> float | FloatArray:
-    """Zero error of a converter, one that drifts: per row or fine, as `size` has it. `began_s`: when the drift did."""
-    if c[EP_DRIFTS] == 0.0:
-        return float(c[EP_ZERO])
-    at_s = time_s if size == time_s.size else np.interp(np.arange(size), offsets, time_s)
-    drifted: FloatArray = c[EP_ZERO] + c[EP_DRIFTS] * -np.expm1(-(at_s - began_s) / c[EP_DRIFTS_S])
-    return drifted
-
-
-def supplied(goal: FloatArray, c: FloatArray) -> FloatArray:
-    """The goal below the supply: the smaller of the two, or with a knee a softened minimum of them."""
-    most: FloatArray = np.minimum(goal, c[EP_SUPPLY])
-    if c[EP_KNEE] > 0.0:
-        most -= c[EP_KNEE] * np.log1p(np.exp(-np.abs(goal - c[EP_SUPPLY]) / c[EP_KNEE]))
-    return most
 
 
 def through_ports(c: FloatArray) -> FloatArray:
@@ -132,7 +116,7 @@ def through_ports(c: FloatArray) -> FloatArray:
 
 def bounded(c: FloatArray) -> bool:
     """Whether the lag toward the goal is more than a lag: an overlap, a quick exhaust, a clogged passage, a limit."""
-    limited = min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_TANK]) < FOREVER
+    limited = min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_CUT], c[EP_TANK]) < FOREVER
     return bool(limited or c[EP_BAND_MODE] >= 3.0 or c[[EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN]].any())
 
 

@@ -17,13 +17,12 @@ from twin.kernels.ep import (
     _slewed,
     boosted,
     bounded,
-    supplied,
     through_ports,
-    zero,
 )
 from twin.kernels.follow import follow
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.stroke import struck
+from twin.kernels.supply import cut, supplied, supply, zero
 from twin.slots import (
     EP_AIR,
     EP_AMBIENT,
@@ -67,7 +66,8 @@ class Converter:
         if self._booster is not None:
             booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
         elif self._bounded:
-            follow_bounded(time_s, offsets, goal, self._c, self._plain, self._bound, out)
+            highest = cut(self._c, time_s, offsets, self._began_s)
+            follow_bounded(time_s, offsets, goal, self._c, highest, self._plain, self._bound, out)
         else:
             follow(time_s, offsets, goal, self._c, self._plain, out)
         self._plain = float(out[-1])
@@ -100,7 +100,8 @@ class Converter:
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
             self._held = float(goal[-1])
-        goal = supplied(zero(c, time_s, offsets, goal.size, self._began_s) + c[EP_GAIN] * goal, c)
+        most = supply(c, time_s, offsets, goal.size, self._began_s)
+        goal = supplied(zero(c, time_s, offsets, goal.size, self._began_s) + c[EP_GAIN] * goal, most, c)
         if c[EP_SLEW] < FOREVER:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._aim = _slewed(time_s, source, offsets, float(c[EP_SLEW]), self._aim, goal)
