@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Collection, Sequence
 
 from twin.catalog import effects
+from twin.choose.outside import NUMBERS_LEAVE
 from twin.diagnosis import Cause
 
 #: Of the noise; a design that misses by less has no gap worth a word, when its only cause was taken back.
@@ -37,6 +38,9 @@ def leaves_too_much(
         # a cause before a measured pressure has that to show for itself
         behind = any(not apart or c.stage != "ep" for c in causes)
         return behind and before > SLIGHT * floor and left > ERRATIC * gap
+    numbers = all(c.name.startswith("parameter:") for c in causes)
+    if numbers and not exact and after > NUMBERS_LEAVE * floor:
+        return True
     known = effects()
     erratic = any(c.name in known and known[c.name].erratic for c in causes)
     told = all(c.name in shown for c in causes)

@@ -25,6 +25,7 @@ from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel
 from twin.plant import Inserted, Plant
 from twin.recorder import rounded_by_recorder
+from twin.refresh import refreshed_together
 
 #: A reading that is false less often than this is ordinary noise with a tail.
 _LEAST_RATE = 2e-4
@@ -50,7 +51,7 @@ class Sensing:
 
     `uneven`: by how much more codes that never occur make the reading err. `band`: by how much a reading that is
     reported on change has to change; 0 for one that is polled. `recorded`: whether the recorder made the step, and not
-    the gauge.
+    the gauge. `together`: whether the pressure is held in the same rows as the position.
     """
 
     events: tuple[Events, ...]
@@ -59,6 +60,7 @@ class Sensing:
     uneven: float = 1.0
     band: float = 0.0
     recorded: bool = False
+    together: bool = False
 
     @property
     def coarseness(self) -> float:
@@ -127,7 +129,8 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if stale.found and stale.log_likelihood_ratio > HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     uneven = _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0
-    return Sensing(events, accepted, step, uneven, recorded=recorded)
+    together_held = any(refreshed_together(r) for r in recordings)
+    return Sensing(events, accepted, step, uneven, recorded=recorded, together=together_held)
 
 
 def _as_estimated(name: str, estimates: Mapping[str, Estimate]) -> Inserted:

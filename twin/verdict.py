@@ -88,7 +88,7 @@ def _unexplained(result: StageResult, ep_share: float, sensing: Sensing) -> bool
     for decision in result.decisions:
         if _hidden(decision, sensing):
             continue
-        if "stale_samples" in sensing.accepted and decision.findings.channel.name != "pressure":
+        if "stale_samples" in sensing.accepted and (decision.findings.channel.name != "pressure" or sensing.together):
             continue
         wanting = decision.gap and not decision.explained and _comes_back(decision)
         if wanting and not _minor(result, decision, ep_share):

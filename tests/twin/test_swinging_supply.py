@@ -73,11 +73,15 @@ def test_a_later_part_of_a_recording_has_the_swing_of_its_time(form: str) -> Non
 def test_its_starts_are_read_from_where_the_pressure_is_held_back() -> None:
     time_s, command = commands()
     noise = np.random.default_rng(2).normal(0.0, 0.01, time_s.size)
-    read = Recording("valve", time_s, command, np.zeros(time_s.size), explicit("swinging_cut_off") + noise)
+    seen = explicit("swinging_cut_off") + noise
+    read = Recording("valve", time_s, command, np.zeros(time_s.size), seen)
     form = EFFECT.form("swinging_cut_off")
     assert form.starts_for is not None
     starts = form.starts_for([read], Scales())
     assert any(np.allclose(one, WAVE, rtol=0.05, atol=0.1) for one in starts)
+    some = np.where(np.arange(time_s.size) % 7 == 3, np.nan, seen)
+    gaps = form.starts_for([Recording("valve", time_s, command, read.position, some)], Scales())
+    assert any(np.allclose(one, WAVE, rtol=0.05, atol=0.1) for one in gaps)
     free = Recording("valve", time_s, command, np.zeros(time_s.size), pressure(Plant(D)) + noise)
     assert list(form.starts_for([free], Scales())) == []
     unread = Recording("valve", time_s, command, np.zeros(time_s.size))

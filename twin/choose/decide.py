@@ -20,6 +20,8 @@ from twin.fit.space import SHIFTED
 #: Squares of the design numbers' moves, in their priors' deviations, that nobody believes; and the share of them that a
 #: larger hypothesis may need to count as sparing the numbers.
 _BENT, _STRAIGHTER = 50.0, 0.2
+#: How far a number may be accused to have moved where nobody believes what they all moved together.
+_MOVED = 0.05
 #: By how many unknowns a free curve exceeds a law.
 _FREE = 5
 #: Mean squared residual over the floor up to which a signal is explained to its noise.
@@ -79,7 +81,9 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
             better, instead = instead, None
         accepted = better
     accepted = _fewer_unknowns(findings, _plainer_member(findings, accepted, rules), rules)
-    accepted = with_numbers(findings, accepted, rules.evidence)
+    accepted = _said(findings, accepted, rules)
+    bent = bent_by(accepted) > rules.believed and accepted.mse > _EXACT * floor
+    accepted = with_numbers(findings, accepted, rules.evidence, _MOVED if bent else SHIFTED)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
@@ -141,18 +145,45 @@ def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     return max(near, key=findings.score) if near else fit
 
 
+def _said(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
+    """`fit`, or a plainer effect with that number accused which `fit` moves as far without a word.
+
+    A creep with two tails that are both far longer than the records is a gain that is too small, and makes the stem's
+    lag its own; it leaves as little as a gain beside another lag.
+    """
+    effects, moved = effects_of(fit), _moved(fit, SHIFTED)
+    if len(fit.names) != 1 or not effects or not moved:
+        return fit
+    near = [
+        f
+        for f in findings.fits
+        if len(f.names) == 2
+        and len(effects_of(f) - effects) == 1
+        and set(f.names) - effects_of(f) <= moved
+        and len(f.space.unknowns) < len(fit.space.unknowns)
+        and f.mse <= fit.mse + rules.plain
+        and findings.score(f) > findings.score(fit) + rules.evidence
+    ]
+    return max(near, key=findings.score) if near else fit
+
+
+def _moved(fit: Fit, far: float) -> set[str]:
+    """The design numbers, as causes, that a hypothesis moves `far`."""
+    return {f"parameter:{n}" for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > far}
+
+
 def _with_another(f: Fit, fit: Fit) -> bool:
     """Whether `f` is `fit` with another effect in the place of one cause."""
     other = len(f.names) == len(fit.names) and len(set(fit.names) - set(f.names)) == 1
     return other and bool(effects_of(f) - effects_of(fit))
 
 
-def with_numbers(findings: Findings, fit: Fit, evidence: float) -> Fit:
-    """`fit`, or the same effects with the design numbers accused that they had to move far.
+def with_numbers(findings: Findings, fit: Fit, evidence: float, far: float = SHIFTED) -> Fit:
+    """`fit`, or the same effects with the design numbers accused that they had to move `far`.
 
     A number that rides along as a nuisance leaves no gap to be closed by accusing it; what it pays is its prior.
     """
-    moved = {f"parameter:{n}" for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > SHIFTED}
+    moved = _moved(fit, far)
     own = set(fit.names)
     larger = [f for f in findings.fits if own < set(f.names) and set(f.names) - own <= moved]
     best = max(larger, key=findings.score, default=None)
@@ -170,7 +201,10 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     significant = findings.score(large) - findings.score(small) > rules.evidence
     # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
     # ... and so is the little that a second one removes beside a large gap
-    tidy = gain > max(rules.complete * left, rules.trifle * before) and size_of(large) < 3
+    # ... but for a number, of which no form can be at fault: what it clearly leaves is somebody else's
+    numbers = bool(small.names) and not effects_of(small)
+    trifle = 0.0 if numbers and small.mse > rules.quiet * floor else rules.trifle
+    tidy = gain > max(rules.complete * left, trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
     spares = bent_by(small) > _BENT and bent_by(large) < _STRAIGHTER * bent_by(small)
     first = small is findings.none

@@ -158,12 +158,14 @@ _HELD_BACK, _ROWS = 0.1, 20
 def _swung(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """The swings that the pressure shows where the supply holds it back; as the parameters say where none does."""
     record = records[0]
-    if record.pressure is None:
+    read = np.zeros(record.n, dtype=bool) if record.pressure is None else np.isfinite(record.pressure)
+    if record.pressure is None or read.sum() < _ROWS:
         return []
-    held = _held_back(record.command, record.pressure, record.time_s, _HELD_BACK * scales.pressure)
+    time_s, pressure = record.time_s[read], record.pressure[read]
+    held = _held_back(record.command[read], pressure, time_s, _HELD_BACK * scales.pressure)
     if held.sum() < _ROWS:
         return []
-    at_s, highest = record.time_s[held] - record.time_s[0], record.pressure[held]
+    at_s, highest = time_s[held] - record.time_s[0], pressure[held]
     tried = [(*_wave(at_s, highest, period_s), float(period_s)) for period_s in _PERIODS * scales.time]
     able = [one for one in tried if max(abs(v) for v in one[2:4]) < _COSINE.upper * scales.pressure]
     valleys = [b for a, b, c in zip(able, able[1:], able[2:], strict=False) if b[0] <= min(a[0], c[0])]
@@ -175,7 +177,7 @@ def _held_back(command: FloatArray, pressure: FloatArray, time_s: FloatArray, le
     slope, lag = np.gradient(pressure, time_s), command - pressure
     falls = (lag < -least) & (slope < 0.0)
     tau_s = float(np.median(lag[falls] / slope[falls])) if falls.any() else 0.0
-    lag -= np.nanmedian(lag - tau_s * slope)
+    lag -= np.median(lag - tau_s * slope)
     held: np.ndarray = (lag > least) & (tau_s * np.abs(slope) < 0.5 * lag)
     return held
 
