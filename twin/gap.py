@@ -26,6 +26,9 @@ Progress = Callable[[str, float], None]
 _RANKED = 6
 #: Of the error after; a cause without which the error is smaller than that is not needed.
 IDLE = 1.03
+#: Of 53 machines of strangers that were left unexplained with a re-tuned model, four had it by far worse on an unseen
+#: record than the design (as much as 38 times the error); three of those had left 58 % of the squares and more.
+PAYS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,8 +88,11 @@ def idle_cause(
 
 
 def retuning_pays(parts: GapParts) -> bool:
-    """Whether the re-tuned design predicts unseen data better than the design as given."""
-    return rms(parts.retuned) < rms(parts.before)
+    """Whether the re-tuned design misses unseen data by less than `PAYS` of the squares of the design as given.
+
+    Numbers that leave more than that are not what is wrong, but bent to imitate it, and go astray on other commands.
+    """
+    return bool(rms(parts.retuned) ** 2 < PAYS * rms(parts.before) ** 2)
 
 
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
