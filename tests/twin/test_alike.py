@@ -40,6 +40,7 @@ def wrong_zero(highest_psi: float) -> tuple[Decision, Judgement]:
     return found.decisions[-1], judgement
 
 
+@pytest.mark.thorough
 def test_a_wrong_zero_and_a_stop_that_is_off_are_alike_where_the_other_stop_is_never_reached() -> None:
     decision, judgement = wrong_zero(9.5)
     assert decision.names == ("lvdt_calibration",)
@@ -47,6 +48,7 @@ def test_a_wrong_zero_and_a_stop_that_is_off_are_alike_where_the_other_stop_is_n
     assert judgement.alike["lvdt_calibration"] == alike(decision, "lvdt_calibration")
 
 
+@pytest.mark.thorough
 def test_at_both_stops_a_wrong_zero_is_like_no_single_stop() -> None:
     decision, _ = wrong_zero(13.0)
     assert decision.names == ("lvdt_calibration",)

@@ -115,9 +115,9 @@ def test_the_stem_is_heard_within_the_steps_of_its_reading() -> None:
     [
         (0.005, 3.0, "no_gap"),
         (0.005, 5.0, "unexplained"),
-        (0.03, 15.0, "no_gap"),
-        (0.03, 150.0, "unexplained"),
-        (0.0, 3.0, "unexplained"),
+        pytest.param(0.03, 15.0, "no_gap", marks=pytest.mark.thorough),
+        pytest.param(0.03, 150.0, "unexplained", marks=pytest.mark.thorough),
+        pytest.param(0.0, 3.0, "unexplained", marks=pytest.mark.thorough),
     ],
 )
 def test_what_is_beyond_the_edges_by_a_little_is_no_gap(half: float, mse: float, verdict: str) -> None:
