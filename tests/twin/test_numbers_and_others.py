@@ -75,6 +75,15 @@ def test_what_a_number_clearly_leaves_is_worth_a_cause_however_large_the_gap(
     assert _worth(findings, one, both, DecisionRules(), 1.0) is wanted
 
 
+@pytest.mark.parametrize(("form", "wanted"), [("own_clock", True), ("periodic", False)])
+def test_behind_a_clock_of_its_own_nobody_knows_what_the_healthy_machine_leaves(form: str, wanted: bool) -> None:
+    """A filter behind readings that are held, 1000 nats ahead, leaves less than repeats of the held ones differ by."""
+    stale = caused("stale_samples", form)
+    one, both = a_fit(0.72, stale), a_fit(0.4, stale, LAG)
+    findings = found(164.0, (one, -1000.0), (both, 0.0))
+    assert _worth(findings, one, both, DecisionRules(within=1.0), 1.0) is wanted
+
+
 def test_a_number_that_a_creep_moves_without_a_word_is_said_where_the_evidence_is_for_it() -> None:
     creep = a_fit(0.97, caused("creep", "pull_tails_apart"), moved={"tau": -0.13})
     gain = a_fit(0.965, caused("lvdt_calibration", "gain"), caused("parameter:tau"), moved={"tau": -0.13})

@@ -195,14 +195,16 @@ def with_numbers(findings: Findings, fit: Fit, evidence: float, far: float = SHI
 def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, floor: float) -> bool:
     """Whether the larger hypothesis earns its further causes."""
     # where it is known what the healthy machine leaves, nothing is gained by leaving less: a free curve takes of that
-    gain = small.mse - (max(large.mse, floor) if rules.within > 0.0 else large.mse)
+    # ... but for readings held by a clock of their own, by which repeats differ and what passes for noise with them
+    held = any(c.form is not None and c.form.seen for c in small.space.causes)
+    gain = small.mse - (max(large.mse, floor) if rules.within > 0.0 and not held else large.mse)
     before = max(findings.none.mse - floor, 0.0)
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence
     # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
     # ... and so is the little that a second one removes beside a large gap
     # ... but for a number, of which no form can be at fault: what it clearly leaves is somebody else's
-    numbers = bool(small.names) and not effects_of(small)
+    numbers = bool(small.space.causes) and not effects_of(small)
     trifle = 0.0 if numbers and small.mse > rules.quiet * floor else rules.trifle
     tidy = gain > max(rules.complete * left, trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
