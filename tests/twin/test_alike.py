@@ -55,6 +55,7 @@ def test_at_both_stops_a_wrong_zero_is_like_no_single_stop() -> None:
     assert "reduced_travel" not in alike(decision, "lvdt_calibration")
 
 
+@pytest.mark.thorough
 def test_what_is_not_explained_to_its_noise_is_like_nothing() -> None:
     decision, _ = wrong_zero(9.5)
     assert alike(replace(decision, floor=0.5 * decision.accepted.mse), "lvdt_calibration") == ()

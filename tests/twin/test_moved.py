@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
+
 from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.catalog import effect
@@ -33,6 +35,7 @@ def test_a_deadband_where_the_design_has_none() -> None:
     assert "deadband 0.3 instead of 0 psi" in note.what
 
 
+@pytest.mark.thorough
 def test_a_diagnosis_says_what_it_re_tuned_where_nothing_explains() -> None:
     """A damping that grows with the speed alike both ways is nothing known; a longer lag takes most of it."""
     damping = Inserted("asymmetric_damping", effect("asymmetric_damping").form("orifice_each_way"), (1.5, 1.5))

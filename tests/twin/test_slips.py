@@ -24,13 +24,12 @@ OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14
 EVERYTHING = {"deadband", "offset", "compliance", "tau", "rate_limit"}
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(
     ("design", "wrong"),
     [
-        pytest.param(OFF, EVERYTHING, marks=pytest.mark.thorough),
-        pytest.param(
-            replace(OFF, rate_limit=DesignModel().rate_limit), EVERYTHING - {"rate_limit"}, marks=pytest.mark.thorough
-        ),
+        (OFF, EVERYTHING),
+        (replace(OFF, rate_limit=DesignModel().rate_limit), EVERYTHING - {"rate_limit"}),
         (replace(DesignModel(), tau_s=2.2, compliance=0.2, rate_limit=0.14), {"tau", "compliance", "rate_limit"}),
     ],
 )

@@ -53,6 +53,7 @@ def test_what_the_record_says_comes_first() -> None:
     assert not _more_usual(accepted, unlike, Weights())
 
 
+@pytest.mark.thorough
 def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:
     decision = settled(late(0.8), DecisionRules(), Weights())
     rivals = [f for f in decision.findings.fits if f.names == ("additional_lag",)]
