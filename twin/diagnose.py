@@ -210,7 +210,14 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     reported, noise = (sensing.inserted(), as_reported(noise)) if on_change else ((), noise)
     inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))
     said = [new_only(r) if sensing.held and refreshed_together(r) else r for r in recordings]
-    seen = (sensing.bad_rows, noise, sensing.coarseness, _held(recordings, sensing), sensing.sharp, settings.doubt)
+    seen = (
+        sensing.bad_rows,
+        noise,
+        sensing.coarseness,
+        sensing.held and not sensing.together,
+        sensing.sharp,
+        settings.doubt,
+    )
     case = make_case(said, design, inserted, *seen)
     known.case, known.margin_share = widened(case, settings.margin)
     late, late_notes = late_commands(look_at(known.case)[0])
@@ -219,11 +226,6 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing), *heavy_tail(sensing)]
     known.notes += [recorder_note(recordings, sensing.step)] if sensing.recorded else []
     return case, look, sensing, tuple(late)
-
-
-def _held(recordings: Sequence[Recording], sensing: Sensing) -> bool:
-    """Whether the position, and not the pressure with it, is seen to be refreshed more slowly than polled."""
-    return sensing.held and not any(refreshed_together(r) for r in recordings)
 
 
 def _final_plant(case: Case, result: StageResult, judgement: Judgement, retuned: Fit | None, sensing: Sensing) -> Plant:

@@ -114,11 +114,12 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     apart = enough and not together([e.tail for e in events]).heavy
     if apart and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
         accepted["sensor_dropouts"] = dict(drop.estimates)
+    held_together = any(refreshed_together(r) for r in recordings)
     band = _band(events, max(_LEAST_STEP * travel, 2.0 * noise.position.sigma))
     if band > 0.0:
         # what is reported on change repeats, and is neither late nor in steps
         accepted["sensor_quantization"] = {"step": _strongest(events, ON_CHANGE).estimates["band"]}
-        return Sensing(events, accepted, 0.0, band=band)
+        return Sensing(events, accepted, 0.0, band=band, together=held_together)
     quantization = _strongest(events, "sensor_quantization")
     step = quantization.estimates["step"].value if "step" in quantization.estimates else 0.0
     in_steps = quantization.found and step > max(_LEAST_STEP * travel, _noise_without(noise, step))
@@ -129,8 +130,7 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     if stale.found and stale.log_likelihood_ratio > HELD_NATS and _slow_refresh(stale):
         accepted["stale_samples"] = {"period": stale.estimates["refresh_period"]}
     uneven = _uneven(recordings, step) if "sensor_quantization" in accepted else 1.0
-    together_held = any(refreshed_together(r) for r in recordings)
-    return Sensing(events, accepted, step, uneven, recorded=recorded, together=together_held)
+    return Sensing(events, accepted, step, uneven, recorded=recorded, together=held_together)
 
 
 def _as_estimated(name: str, estimates: Mapping[str, Estimate]) -> Inserted:

@@ -21,7 +21,7 @@ from twin.fit.space import SHIFTED
 #: larger hypothesis may need to count as sparing the numbers.
 _BENT, _STRAIGHTER = 50.0, 0.2
 #: How far a number may be accused to have moved where nobody believes what they all moved together.
-_MOVED = 0.05
+_UNBELIEVED = 0.05
 #: By how many unknowns a free curve exceeds a law.
 _FREE = 5
 #: Mean squared residual over the floor up to which a signal is explained to its noise.
@@ -82,17 +82,21 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
         accepted = better
     accepted = _fewer_unknowns(findings, _plainer_member(findings, accepted, rules), rules)
     accepted = _said(findings, accepted, rules)
-    bent = bent_by(accepted) > rules.believed and accepted.mse > _EXACT * floor
-    accepted = with_numbers(findings, accepted, rules.evidence, _MOVED if bent else SHIFTED)
+    far = _UNBELIEVED if _imitates(accepted, rules, floor) else SHIFTED
+    accepted = with_numbers(findings, accepted, rules.evidence, far)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
-    # what imitates must bend the numbers, and leaves something all the same
-    imitates = bent_by(accepted) > rules.believed and accepted.mse > _EXACT * floor
+    imitates = _imitates(accepted, rules, floor)
     enough = size > 0 and (rest < rules.unexplained or nothing_left)
     explained = enough and not imitates
     gap = explained or findings.none.mse > rules.quiet * floor
     return Decision(findings, accepted, explained, gap, rest, floor, enough and imitates)
+
+
+def _imitates(fit: Fit, rules: DecisionRules, floor: float) -> bool:
+    """Whether a hypothesis must bend the numbers beyond belief, and leaves something all the same."""
+    return bent_by(fit) > rules.believed and fit.mse > _EXACT * floor
 
 
 def _better(findings: Findings, accepted: Fit, rules: DecisionRules, floor: float) -> Fit | None:

@@ -55,7 +55,10 @@ _SKEW = Parameter(
 
 def _push(c: Coefficients, shape: FloatArray) -> None:
     # Without its straight line: that part re-tunes offset and compliance and says nothing about the fluid.
-    shift = detrended(shape, c.xi)
+    _shift(c, detrended(shape, c.xi))
+
+
+def _shift(c: Coefficients, shift: FloatArray) -> None:
     c.close_shift += shift
     c.open_shift += shift
 
@@ -93,9 +96,7 @@ def _lopsided(xi: FloatArray, skew: float) -> FloatArray:
 
 def _peak(c: Coefficients, values: Sequence[float]) -> None:
     # Nothing at either end, where offset and compliance are told: with no line of its own to take off.
-    shift = values[0] * _lopsided(c.xi, values[1])
-    c.close_shift += shift
-    c.open_shift += shift
+    _shift(c, values[0] * _lopsided(c.xi, values[1]))
 
 
 def _stem_peak(c: Coefficients, values: Sequence[float]) -> None:
