@@ -61,7 +61,8 @@ EP_SWINGS_S = 41  # period with which the supply swings [s]; 0: it does not
 EP_SWING_COS = 42  # by how much it is higher at the beginning of a recording [pressure]
 EP_SWING_SIN = 43  # and a quarter of the period later
 EP_CUT = 44  # supply that swings so and cuts the pressure off, as EP_CLIP does one that does not [pressure]
-EP_COUNT = 45
+EP_MIDDLE = 45  # where the stem is as what EP_CHAMBER adds leaves the slopes as they are [position]
+EP_COUNT = 46
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

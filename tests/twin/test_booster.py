@@ -42,8 +42,9 @@ WIDE = 0.034 * D.travel / D.compliance
 
 
 def plant(up_s: float, down_s: float, air: float) -> Plant:
-    """The thesis's valve behind such a converter."""
-    return Plant(D, (Inserted("ep_rate_limit", effect("ep_rate_limit").form("orifices"), (up_s, down_s, air)),))
+    """The thesis's valve behind such a converter, whose slownesses are those with the stem open."""
+    half_way = tuple(slow_s * (1.0 + 0.5 * air) for slow_s in (up_s, down_s))
+    return Plant(D, (Inserted("ep_rate_limit", effect("ep_rate_limit").form("orifices"), (*half_way, air)),))
 
 
 def pressure(one: Plant, stem: FloatArray | None = STEM, step_s: float = 0.02) -> FloatArray:
@@ -202,15 +203,31 @@ def test_dirt_in_a_port_lets_less_through_it(dirt: float, up: float, down: float
     np.testing.assert_allclose(pressure(Plant(D, (port,)), None), plain[grid.offsets], atol=1e-12)
 
 
+@pytest.mark.parametrize("air", [0.5, 4.0])
+def test_the_slopes_are_those_with_the_stem_half_way(air: float) -> None:
+    """More air through wider openings is all but the same there: slownesses of the open stem leave fits a valley."""
+    form = effect("ep_rate_limit").form("orifices")
+    filled = pressure(Plant(D, (Inserted("ep_rate_limit", form, (0.5, 0.5, air)),)), np.full_like(STEM, 0.5 * D.travel))
+    slope = np.max(np.gradient(filled, TIME_S))
+    assert slope == pytest.approx(2.0, rel=0.01)
+
+
 @pytest.mark.parametrize("dirt", [4.0, -4.0])
-def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float) -> None:
-    """That a narrow supply port fills as ISO 6358 says, up to the supply, and that more or less air is swept."""
-    port = Inserted("fill_exhaust_asymmetry", effect("fill_exhaust_asymmetry").form("port_and_chamber"), (dirt, -0.4))
-    clean, by = plant(0.1, 0.15, 2.5), 1.0 + abs(dirt)
-    up, down, supply = (0.1, 0.15 * by, np.inf) if dirt > 0.0 else (0.1 * by, 0.15, 1.38 * 14.696)
-    found = pressure(clean.having((port,)), step_s=0.005)
-    assert np.max(np.abs(found - stepped(up, down, 1.5, supply))) < 0.02
-    np.testing.assert_allclose(pressure(Plant(D, (port, *clean.inserted)), step_s=0.005), found, atol=1e-12)
+@pytest.mark.parametrize("clean", [0.0, 0.1])
+def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float, clean: float) -> None:
+    """That a narrow supply port fills as ISO 6358 says, up to the supply, and that more or less air is swept.
+
+    With the stem half way the chamber is 2.25 times as large, then 1.75 times, with the same slopes.
+    """
+    form = effect("fill_exhaust_asymmetry").form("port_and_chamber")
+    port = Inserted("fill_exhaust_asymmetry", form, (dirt, -0.4, clean))
+    known, by, other = plant(0.1, 0.15, 2.5), 1.0 + abs(dirt), 1.0 + clean * abs(dirt)
+    up, down, supply = (0.1 * other, 0.15 * by, np.inf) if dirt > 0.0 else (0.1 * by, 0.15 * other, 1.38 * 14.696)
+    if clean > 0.0:
+        supply = 1.38 * 14.696
+    found = pressure(known.having((port,)), step_s=0.005)
+    assert np.max(np.abs(found - stepped(up * 2.25 / 1.75, down * 2.25 / 1.75, 1.5, supply))) < 0.02
+    np.testing.assert_allclose(pressure(Plant(D, (port, *known.inserted)), step_s=0.005), found, atol=1e-12)
 
 
 @pytest.mark.thorough

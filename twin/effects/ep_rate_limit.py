@@ -92,7 +92,9 @@ def _orifices(c: Coefficients, values: Sequence[float]) -> None:
     d = c.design
     c.ep[[EP_ATMOSPHERE, EP_AMBIENT]] = atmosphere(d.pressure_unit)
     c.ep[EP_REFERENCE] = max(d.offset, c.ep[EP_AMBIENT] + 0.1 * c.ep[EP_ATMOSPHERE])
-    c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = _rate(values[0]), _rate(values[1])
+    # of the chamber as it is half way: more air through wider openings is all but the same, with the stem there
+    middle = 1.0 + 0.5 * values[2]
+    c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = middle * _rate(values[0]), middle * _rate(values[1])
     c.ep[EP_NOMINAL] = max(_SUPPLY * c.ep[EP_ATMOSPHERE] + c.ep[EP_AMBIENT], _OVER * (d.a1 + d.travel / d.compliance))
     c.ep[EP_OPEN] = _WIDE * d.travel / d.compliance
     c.ep[EP_AIR] = values[2] / d.travel
@@ -107,9 +109,9 @@ EFFECT = Effect(
     stage="ep",
     claim="The slope of the pressure is bounded by flow capacity.",
     equations="|dp/dt| <= 1 / slowness; ramped: the goal of the lag moves no faster than 1 / slowness; orifices: "
-    "V dp/dt = flow - (p + p_a) dV/dt, V = 1 + air * x / travel; flow: 1 / slowness_up rising, falling with ISO 6358's "
-    "outflow at p over that at the offset; in proportion near the goal; a stroke that moves the pressure limits no "
-    "rate, it only resembles it: dp/dt = (u - p) / tau - stroke / k dx/dt",
+    "V dp/dt = flow - (p + p_a) dV/dt, V = (1 + air * x / travel) / (1 + air / 2); flow: 1 / slowness_up rising, "
+    "falling with ISO 6358's outflow at p over that at the offset; in proportion near the goal; a stroke that moves "
+    "the pressure limits no rate, it only resembles it: dp/dt = (u - p) / tau - stroke / k dx/dt",
     source="Andersen, The Analysis and Design of Pneumatic Systems (Wiley 1967); ISO 6358-1 (choked flow)",
     forms=(
         Form("symmetric", (_slowness("slowness", "least time per unit of pressure, 1 / rate limit"),), _symmetric),
@@ -125,7 +127,7 @@ EFFECT = Effect(
         Form(
             "orifices",
             (
-                _through("slowness_up", "least time per unit of pressure when rising, with the stem open"),
+                _through("slowness_up", "least time per unit of pressure when rising, with the stem in the middle"),
                 _through("slowness_down", "the same when falling from the middle of the two curves"),
                 _AIR,
             ),

@@ -11,6 +11,7 @@ from twin.slots import (
     EP_CLOG_DOWN,
     EP_CLOG_UP,
     EP_CRACK,
+    EP_MIDDLE,
     EP_PORT_DOWN,
     EP_PORT_UP,
     EP_QUICK,
@@ -30,8 +31,11 @@ def _port(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _port_and_chamber(c: Coefficients, values: Sequence[float]) -> None:
-    _port(c, values)
-    c.ep[EP_CHAMBER] = 1.0 + values[1] if values[0] != 0.0 else 0.0
+    dirt, room, clean = values
+    _port(c, (dirt,))
+    c.ep[EP_PORT_UP if dirt > 0.0 else EP_PORT_DOWN] = 1.0 + clean * abs(dirt)
+    c.ep[EP_CHAMBER] = 1.0 + room if dirt != 0.0 else 0.0
+    c.ep[EP_MIDDLE] = 0.5 * c.design.travel
 
 
 def _quick(c: Coefficients, values: Sequence[float]) -> None:
@@ -74,6 +78,17 @@ _ROOM = Parameter(
     doc="by how much more the stem sweeps than a machine whose ports never limited it had shown",
     size=False,
 )
+#: More of it, and one limit would hold both ports.
+_CLEAN = Parameter(
+    name="clean",
+    kind="fraction",
+    lower=-0.1,
+    upper=0.2,
+    starts=(0.05,),
+    scale=0.05,
+    doc="by how much less the other port lets through than such a machine had shown, as a share of the dirt",
+    size=False,
+)
 _QUICK = Parameter(
     name="quick",
     kind="fraction",
@@ -100,7 +115,8 @@ EFFECT = Effect(
     claim="Pressure rises and falls with different time constants.",
     equations="dp/dt = (u - p) / (tau (1 + asymmetry)) rising, (u - p) / (tau (1 - asymmetry)) falling; "
     "port: tau (1 + dirt) falling, or tau (1 - dirt) rising where it is negative; of a booster, the flow instead; "
-    "port_and_chamber: likewise, air of the booster times 1 + room, filling as from its supply (ISO 6358); "
+    "port_and_chamber: likewise, the other port lets 1 / (1 + clean |dirt|) through, "
+    "air of the booster times 1 + room, as seen with the stem in the middle, filling as from its supply (ISO 6358); "
     "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens; "
     "clogged: tau (1 + clog |dp/dt|) dp/dt = u - p falling, or rising where it is negative",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
@@ -127,7 +143,7 @@ EFFECT = Effect(
             _port,
             by_pressure=True,
         ),
-        Form("port_and_chamber", (_MUCH_DIRT, _ROOM), _port_and_chamber, by_pressure=True),
+        Form("port_and_chamber", (_MUCH_DIRT, _ROOM, _CLEAN), _port_and_chamber, by_pressure=True),
         Form("quick_exhaust", (_QUICK, _CRACK), _quick),
         Form("clogged", (_CLOG,), _clogged),
     ),

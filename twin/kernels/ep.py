@@ -29,6 +29,7 @@ from twin.slots import (
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
+    EP_MIDDLE,
     EP_MIXED_S,
     EP_NOMINAL,
     EP_PORT_DOWN,
@@ -107,6 +108,8 @@ def through_ports(c: FloatArray) -> FloatArray:
     if boosted(c):
         narrow[[EP_FULL_UP, EP_FULL_DOWN]] /= ports
         if c[EP_CHAMBER] > 0.0:
+            middle = 1.0 + c[EP_MIDDLE] * c[EP_AIR] * np.array([1.0, c[EP_CHAMBER]])
+            narrow[[EP_FULL_UP, EP_FULL_DOWN]] *= middle[1] / middle[0]
             narrow[EP_AIR] *= c[EP_CHAMBER]
             narrow[EP_CLIP] = min(c[EP_CLIP], c[EP_NOMINAL] if ports[0] > 1.0 else FOREVER)
     else:
