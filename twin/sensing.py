@@ -36,7 +36,7 @@ _LEAST_STEP = 1e-3
 #: Held readings are an effect of their own when they are this share of all.
 _HELD = 0.3
 #: ... or this share, where far fewer than would by chance (this share of them) are held twice running.
-_CLOCKED, _AGAIN = 0.1, 0.5
+_CLOCKED, _AGAIN = 0.05, 0.5
 #: ... or this share, where so many of them are held once more in the next row.
 _HUNG, _ON = 0.02, 0.5
 #: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.

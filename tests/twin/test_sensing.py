@@ -53,16 +53,17 @@ def test_one_reading_far_off_is_enough_when_it_outweighs_the_noise_of_all() -> N
         assert ("sensor_dropouts" in found(replace(recording, position=position))) is named
 
 
-@pytest.mark.parametrize("period_rows", [1.15, 1.35])
+@pytest.mark.parametrize("period_rows", [1.07, 1.15, 1.35])
 def test_a_refresh_hardly_slower_than_the_polls_never_holds_twice_running(period_rows: float) -> None:
     recording = fast_moving()
     source = np.floor(np.floor(np.arange(recording.n) / period_rows) * period_rows).astype(int)
     assert "stale_samples" in found(replace(recording, position=recording.position[source]))
 
 
-def test_as_many_lost_replies_do_hold_twice_running() -> None:
+@pytest.mark.parametrize("share", [0.07, 0.15])
+def test_as_many_lost_replies_do_hold_twice_running(share: float) -> None:
     recording = fast_moving()
-    lost = np.random.default_rng(7).random(recording.n) < 0.15
+    lost = np.random.default_rng(7).random(recording.n) < share
     source = np.maximum.accumulate(np.where(lost, 0, np.arange(recording.n)))
     assert "stale_samples" not in found(replace(recording, position=recording.position[source]))
 
