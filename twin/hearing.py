@@ -9,13 +9,12 @@ from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
-from twin.closure import rms
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause
+from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause, passes_for_noise
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.tolerance import forgiven, needless_number, within_tolerance
-from twin.upheld import HARDLY, explained_to_noise, nothing, shown_by_pressure, upheld
+from twin.upheld import explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
@@ -62,7 +61,7 @@ class Hearing:
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         percent = 100.0 * floor / self.case.travel
         while idle := (
-            idle_cause(parts, judgement, result, self.case.travel, self._hardly(parts, percent))
+            idle_cause(parts, judgement, result, self.case.travel, passes_for_noise(parts, percent, self.case.travel))
             or needless_number(parts, judgement.causes, self._slight(judgement), percent)
         ):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
@@ -70,13 +69,6 @@ class Hearing:
             judgement = self.judgement(result)
             parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, judgement, parts
-
-    def _hardly(self, parts: GapParts, floor_percent: float) -> float:
-        """What a healthy machine leaves [percent of travel]: no more than a little beside the noise.
-
-        Nor beside what is left: where all causes leave less than the noise, that was estimated too large.
-        """
-        return HARDLY * min(floor_percent, 100.0 * rms(parts.after) / self.case.travel)
 
     def _dropped(self, decision: Decision, name: str) -> Decision:
         """The decision without a cause; the others are fitted without it where they never were."""

@@ -128,8 +128,9 @@ def test_a_slight_error_without_a_measured_pressure_has_a_cause_if_a_law_of_the_
     ("further", "left", "after", "named"),
     [
         ("lvdt_drift", 1.1, 1.0, False),
-        ("lvdt_drift", 1.2, 1.0, True),
-        ("lvdt_drift", 1.1, 0.9, True),  # the noise was estimated too large
+        ("lvdt_drift", 1.2, 1.0, False),
+        ("lvdt_drift", 1.3, 1.0, True),
+        ("lvdt_drift", 1.2, 0.9, True),  # the noise was estimated too large
         ("lvdt_drift", 1.0, 0.9, False),
         ("parameter:tau", 1.25, 1.0, False),  # as the design says, to its tolerance
         ("parameter:tau", 1.35, 1.0, True),

@@ -49,7 +49,21 @@ def test_what_the_stops_keep_it_from_does_not_pull() -> None:
     near = DESIGN.a2 + 0.02 / K
     pressure = levels((near, 40.0), (DESIGN.a2 - 2.0, 40.0))
     assert abs(stem("target_sticks", (0.3, 4e-3), pressure, 0.3)[-1] - 0.02) < 1e-3
-    assert stem("slip_until_slow", (0.3, 2e-4), pressure, 0.3)[-1] < 1e-3
+    for form, values in (("slip_until_slow", (0.3, 2e-4)), ("target_sticks_pressed", (0.3, 4e-3))):
+        assert stem(form, values, pressure, 0.3)[-1] < 1e-3
+
+
+def test_a_slow_ramp_goes_in_jumps_of_the_target_and_a_fast_one_slides() -> None:
+    """On its way it is behind sliding by up to the breakaway, where the target is slower than it takes to stick."""
+    up = np.arange(0.0, 40.0, 0.05)
+    for rate, jumps in ((0.02 / K, True), (0.06 / K, False)):
+        pressure = DESIGN.a1 + np.clip(rate * up - 0.5, -0.5, 0.4 / K)
+        slides = stem("target_sticks_pressed", (0.0, 4e-2), pressure, 0.0)
+        found = stem("target_sticks_pressed", (0.3, 4e-2), pressure, 0.0)
+        moving = (slides > 0.15) & (slides < 0.3)
+        behind = (slides - found)[moving] / K
+        assert bool(behind.max() > 0.15) is jumps
+        assert behind.min() > -1e-3 and behind.max() < 0.3
 
 
 def test_the_breakaway_grows_at_rest() -> None:

@@ -111,6 +111,12 @@ def _target_sticks(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_TARGET_STICKS] = 1.0
 
 
+def _target_sticks_pressed(c: Coefficients, values: Sequence[float]) -> None:
+    """What moves the stem has stops itself: pressed against one, it breaks away by what the stop holds, too."""
+    _slip_until_slow(c, values)
+    c.valve[V_TARGET_STICKS] = 2.0
+
+
 def _grows_at_rest(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_BREAKAWAY] = values[0]
     c.valve[V_AGING_S] = values[1]
@@ -157,9 +163,9 @@ EFFECT = Effect(
     claim="The stem sticks until the pressure exceeds sliding friction by the breakaway, then slips.",
     equations="stuck while o(p + s) >= w >= c(p - s); slipping: w = play(p); sticks again below the stick speed, and "
     "has to break away the other way in any case; target_sticks: the target w itself sticks below the stick speed, and "
-    "what the stops keep it from does not pull at it; grows_at_rest: likewise with s (1 - exp(-rest / aging)); "
-    "held_stem: x stays while |w - x| <= k s; held_stem_pressed: likewise, and w goes k s beyond the stops of x at "
-    "most; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
+    "what the stops keep it from does not pull at it; target_sticks_pressed: or does; grows_at_rest: as the first with "
+    "s (1 - exp(-rest / aging)); held_stem: x stays while |w - x| <= k s; held_stem_pressed: likewise, and w goes k s "
+    "beyond the stops of x at most; falling_with_speed: half deadband + s exp(-|dx/dt| / fall_speed); "
     "falling_with_speed_squared: likewise with exp(-(dx/dt / fall_speed)^2); "
     "short_of_target: what pulls the stem is |w - x| less k s exp(-|dx/dt| / fall_speed)",
     source="Karnopp, J. Dyn. Syst. Meas. Control 107 (1985) 100; He et al., Ind. Eng. Chem. Res. 46 (2007) 4549; "
@@ -167,6 +173,7 @@ EFFECT = Effect(
     forms=(
         Form("slip_until_slow", (_BREAKAWAY, _STICK_SPEED), _slip_until_slow),
         Form("target_sticks", (_BREAKAWAY, _TARGET_SPEED), _target_sticks),
+        Form("target_sticks_pressed", (_BREAKAWAY, _TARGET_SPEED), _target_sticks_pressed),
         Form("grows_at_rest", (_BREAKAWAY, _AGING), _grows_at_rest),
         Form("one_jump", (_BREAKAWAY,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),

@@ -199,12 +199,12 @@ def coupled_steps(
     bent, varies, place = more_at.size > 1, widening.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
     ends, lowest, highest, aging_s = (stops[0], stops[1]), stops[2], stops[3], c[V_AGING_S]
     breakaway, kept, stick_speed = c[V_BREAKAWAY], c[V_HELD], c[V_STICK_SPEED]
-    modes, rates = (stick_speed >= FOREVER, c[V_TARGET_STICKS] != 0.0), (c[V_RATE_CLOSE], c[V_RATE_OPEN])
+    modes, rests = (stick_speed >= FOREVER, c[V_TARGET_STICKS] == 1.0), c[V_TARGET_STICKS] != 0.0
     stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
     x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
     speed, toward, travelled, rested, over = state[4], state[5], state[6], state[7], state[8]
     out[0], on_stem, outer, always, squared = x, c[V_ON_STEM], c[V_OUTER], c[V_KEPT], c[V_FADES_SQUARED] != 0.0
-    last_h, (lags, drags, lates, stay) = -1.0, _lags(1.0, c)
+    last_h, rates, (lags, drags, lates, stay) = -1.0, (c[V_RATE_CLOSE], c[V_RATE_OPEN]), _lags(1.0, c)
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         if abs(h - last_h) > _SAME * h:
@@ -239,7 +239,7 @@ def coupled_steps(
             if kept > 0.0:
                 slipped = abs(new_after - x) > kept
                 new = x if stuck and not slipped else new
-            stuck = (stuck and not slipped) or abs(new_w - w if modes[1] else new - x) < stick_speed * h
+            stuck = (stuck and not slipped) or abs(new_w - w if rests else new - x) < stick_speed * h
             speed, travelled = abs(new - x) / h, travelled + abs(new - x)
             rested, toward = rested + h if stuck else 0.0, new - x if new != x else toward
             out[f] = x = new
