@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray
@@ -32,6 +33,14 @@ def test_a_further_step_short_of_the_breakaway_moves_nothing() -> None:
     assert abs(held[-1] - 0.25) < 1e-4
     moved = stem("target_sticks", (0.3, 4e-3), levels((MIDDLE, 40.0), (MIDDLE + 0.35, 40.0)), 0.0)
     assert abs(moved[-1] - (0.25 + 0.35 * K)) < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("form", "sticks"), [("target_sticks", True), ("target_sticks_pressed", True), ("slip_until_slow", False)]
+)
+def test_the_target_sticks_while_the_stem_is_still_on_its_way(form: str, sticks: bool) -> None:
+    pressure = levels((MIDDLE - 1.0, 5.0), (MIDDLE, 1.0), (MIDDLE + 0.25, 60.0))
+    assert abs(stem(form, (0.3, 4e-3), pressure, 0.0)[-1] - (0.25 if sticks else 0.25 + 0.25 * K)) < 2e-3
 
 
 def test_a_moving_stem_breaks_away_again_before_it_reverses() -> None:
