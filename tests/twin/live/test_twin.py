@@ -10,11 +10,11 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.catalog import effects
+from twin.chain import takes_air
 from twin.effect import Form, Scales
 from twin.live.twin import LiveTwin
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording
-from twin.slots import EP_STROKE
 
 FORMS = [(name, form.name) for name, effect in effects().items() for form in effect.forms if not form.seen]
 
@@ -49,7 +49,7 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     pressure, position = live(plant, record, start)
     whole_p, whole_y = simulate_recording(plant, record, start=start)
     # a replay of so little air goes over both until they agree, a live model block by block (see `twin.chain`)
-    close = 1e-3 if plant.coefficients(record.duration_s).ep[EP_STROKE] else 1e-9
+    close = 1e-3 if takes_air(plant.coefficients(record.duration_s).ep) else 1e-9
     assert np.max(np.abs(pressure - whole_p)) < close
     assert np.max(np.abs(position - whole_y)) < close
     assert np.ptp(position) > 0.1
