@@ -55,6 +55,15 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     assert np.ptp(position) > 0.1
 
 
+def test_a_booster_that_takes_much_air_goes_block_by_block_in_a_replay_too() -> None:
+    """Where going over air and stem does not settle, there is no difference at all between the two."""
+    form = effects()["ep_rate_limit"].form("orifices")
+    plant = Plant(DesignModel(), (Inserted("ep_rate_limit", form, (1.2, 1.2, 4.0)),))
+    record, start = jagged_record(), Start(7.0, 0.1, 0.12)
+    for mine, whole in zip(live(plant, record, start), simulate_recording(plant, record, start=start), strict=True):
+        assert np.max(np.abs(mine - whole)) < 1e-9
+
+
 @pytest.mark.parametrize("form", ["one_tail", "two_tails", "pull_tail", "pull_tails"])
 def test_a_stem_held_by_its_tails_begins_where_it_was_read(form: str) -> None:
     plant = Plant(DesignModel(), (inserted("creep", effects()["creep"].form(form)),))
