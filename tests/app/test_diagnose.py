@@ -82,7 +82,7 @@ def test_missing_values_doubled_rows_and_a_hole(healthy: Recording, tmp_path: Pa
         assert words in said(found)
 
 
-@pytest.mark.parametrize("words", ["after", "unknown"])
+@pytest.mark.parametrize("words", [pytest.param("after", marks=pytest.mark.thorough), "unknown"])
 def test_a_command_that_takes_effect_after_its_row(
     healthy: Recording, tmp_path: Path, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -79,7 +79,10 @@ def test_control_c_leaves_what_is_known(
     assert "interrupted" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("where", ["cut_at_holes", "settled_timing", "late_commands", "predict_reading"])
+@pytest.mark.parametrize(
+    "where",
+    ["cut_at_holes", "settled_timing", "late_commands", pytest.param("predict_reading", marks=pytest.mark.thorough)],
+)
 def test_control_c_early_or_late_leaves_the_gap_of_the_design(
     file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, where: str
 ) -> None:
