@@ -30,7 +30,9 @@ EP_CLIP = 10  # pressure that is cut off rather than aimed at [pressure]
 EP_TANK = 11  # pressure of a supply that sinks as air is drawn from it [pressure]
 EP_DRAW = 12  # by how much it sinks for each unit that the pressure rises [-]
 EP_REFILL_S = 13  # time constant with which it comes back [s]
-EP_FULL_UP = 14  # slope through a booster that is fully open, stem open [pressure/s]; FOREVER: there is no booster
+EP_FULL_UP = (
+    14  # slope through a booster that is fully open, stem at EP_MIDDLE [pressure/s]; FOREVER: there is no booster
+)
 EP_FULL_DOWN = 15  # the same falling, at EP_REFERENCE
 EP_REFERENCE = 16  # [pressure]
 EP_OPEN = 17  # error at which the booster is fully open [pressure]
@@ -61,7 +63,7 @@ EP_SWINGS_S = 41  # period with which the supply swings [s]; 0: it does not
 EP_SWING_COS = 42  # by how much it is higher at the beginning of a recording [pressure]
 EP_SWING_SIN = 43  # and a quarter of the period later
 EP_CUT = 44  # supply that swings so and cuts the pressure off, as EP_CLIP does one that does not [pressure]
-EP_MIDDLE = 45  # where the stem is as what EP_CHAMBER adds leaves the slopes as they are [position]
+EP_MIDDLE = 45  # where the stem is as EP_FULL_UP and EP_FULL_DOWN are the slopes [position]
 EP_COUNT = 46
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------

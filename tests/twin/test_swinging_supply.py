@@ -70,6 +70,23 @@ def test_a_later_part_of_a_recording_has_the_swing_of_its_time(form: str) -> Non
     assert not np.allclose(pressure(plant(form), begins=500)[settled], whole[500:][settled], atol=0.1)
 
 
+def test_behind_a_booster_it_is_the_supply_of_the_booster() -> None:
+    """Of one that swings the pressure is between those of its lowest and its highest, and theirs where it is so."""
+    booster = Inserted("ep_rate_limit", effect("ep_rate_limit").form("orifices"), (0.1, 0.15, 1.5))
+
+    def behind(form: str, *values: float) -> FloatArray:
+        return pressure(plant(form, values).having((booster,)))
+
+    low, high = behind("cut_off", 10.0), behind("cut_off", 12.0)
+    np.testing.assert_allclose(behind("swinging_cut_off", 10.0, 0.0, 0.0, 180.0), low, atol=1e-12)
+    swings = behind("swinging_cut_off", 11.0, 0.0, 1.0, 180.0)
+    assert np.all((swings >= low - 1e-9) & (swings <= high + 1e-9))
+    at_s = commands()[0]
+    top, bottom = np.abs(at_s - 45.0) < 12.0, np.abs(at_s - 135.0) < 12.0
+    assert np.abs(swings - high)[top].max() < 0.1 < np.abs(swings - low)[top].max()
+    assert np.abs(swings - low)[bottom].max() < 0.1 < np.abs(swings - high)[bottom].max()
+
+
 def test_its_starts_are_read_from_where_the_pressure_is_held_back() -> None:
     time_s, command = commands()
     noise = np.random.default_rng(2).normal(0.0, 0.01, time_s.size)

@@ -13,6 +13,7 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_FULL_DOWN,
     EP_FULL_UP,
+    EP_MIDDLE,
     EP_NOMINAL,
     EP_OPEN,
     EP_RATE_DOWN,
@@ -92,12 +93,10 @@ def _orifices(c: Coefficients, values: Sequence[float]) -> None:
     d = c.design
     c.ep[[EP_ATMOSPHERE, EP_AMBIENT]] = atmosphere(d.pressure_unit)
     c.ep[EP_REFERENCE] = max(d.offset, c.ep[EP_AMBIENT] + 0.1 * c.ep[EP_ATMOSPHERE])
-    # of the chamber as it is half way: more air through wider openings is all but the same, with the stem there
-    middle = 1.0 + 0.5 * values[2]
-    c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = middle * _rate(values[0]), middle * _rate(values[1])
+    c.ep[[EP_FULL_UP, EP_FULL_DOWN]] = _rate(values[0]), _rate(values[1])
     c.ep[EP_NOMINAL] = max(_SUPPLY * c.ep[EP_ATMOSPHERE] + c.ep[EP_AMBIENT], _OVER * (d.a1 + d.travel / d.compliance))
     c.ep[EP_OPEN] = _WIDE * d.travel / d.compliance
-    c.ep[EP_AIR] = values[2] / d.travel
+    c.ep[[EP_AIR, EP_MIDDLE]] = values[2] / d.travel, 0.5 * d.travel
 
 
 def _stroke(c: Coefficients, values: Sequence[float]) -> None:

@@ -11,7 +11,6 @@ from twin.slots import (
     EP_CLOG_DOWN,
     EP_CLOG_UP,
     EP_CRACK,
-    EP_MIDDLE,
     EP_PORT_DOWN,
     EP_PORT_UP,
     EP_QUICK,
@@ -35,7 +34,6 @@ def _port_and_chamber(c: Coefficients, values: Sequence[float]) -> None:
     _port(c, (dirt,))
     c.ep[EP_PORT_UP if dirt > 0.0 else EP_PORT_DOWN] = 1.0 + clean * abs(dirt)
     c.ep[EP_CHAMBER] = 1.0 + room if dirt != 0.0 else 0.0
-    c.ep[EP_MIDDLE] = 0.5 * c.design.travel
 
 
 def _quick(c: Coefficients, values: Sequence[float]) -> None:

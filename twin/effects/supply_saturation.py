@@ -203,7 +203,7 @@ EFFECT = Effect(
     "soft: dp/dt = (v - p) / tau, v = -knee ln(exp(-u / knee) + exp(-supply / knee)) (a regulator that runs out of "
     "pressure difference little by little); "
     "swinging: dp/dt = (min(u, supply + cosine cos(2 pi t/period) + sine sin(2 pi t/period)) - p) / tau (a compressor "
-    "that switches on and off); swinging_cut_off: dp/dt = (u - p) / tau and p below that supply",
+    "that switches on and off); swinging_cut_off: cut_off with that supply",
     source="Goodwin, Graebe, Salgado, Control System Design (Prentice Hall 2001), ch. 11 (saturating actuators); "
     "ISO 6358-1 (flow from a supply)",
     forms=(

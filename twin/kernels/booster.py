@@ -18,10 +18,10 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
-    EP_CLIP,
     EP_DRAW,
     EP_FULL_DOWN,
     EP_FULL_UP,
+    EP_MIDDLE,
     EP_NOMINAL,
     EP_OPEN,
     EP_REFERENCE,
@@ -62,14 +62,14 @@ def inflow(p: float, supply: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def weak_supply(p: float, h: float, chamber: Pair, c: FloatArray) -> Pair:
-    """Flow through a full opening from a weak supply, and the pressure to which it fills the chamber in `h` from `p`.
+def weak_supply(p: float, h: float, chamber: Pair, gives: float, c: FloatArray) -> Pair:
+    """Flow through a full opening from a supply that `gives` little, and the pressure that it fills to in `h` from `p`.
 
     `chamber`: rate at which the stem takes pressure, and volume. The pressure is implicit, since the flow drops steeply
     as it comes near the supply's.
     """
     absolute = c[EP_ATMOSPHERE] - c[EP_AMBIENT]
-    supply, p = c[EP_CLIP] + absolute, p + absolute
+    supply, p = gives + absolute, p + absolute
     flow = c[EP_FULL_UP] * min(1.0, supply / (c[EP_NOMINAL] + absolute))
     before = p - h * chamber[0] / chamber[1]
     low, high = min(before, supply), min(before + h * flow / chamber[1], supply)
@@ -87,8 +87,8 @@ def weak_supply(p: float, h: float, chamber: Pair, c: FloatArray) -> Pair:
 def _chamber_step(p: float, v: Pair, h: float, chamber: Pair, full: Pair, opening: Pair) -> float:
     """Pressure after `h` seconds in which the pilot goes from `v[0]` to `v[1]`.
 
-    `chamber`: rate at which the stem takes pressure, and volume, 1 with the stem open; `full`: rates through an opening
-    that is full, up and down; `opening`: errors at which it is, and up to which it is shut.
+    `chamber`: rate at which the stem takes pressure, and volume, 1 with the stem half way; `full`: rates through an
+    opening that is full, up and down; `opening`: errors at which it is, and up to which it is shut.
     """
     taken, room = chamber
     wide, idle = opening
@@ -128,18 +128,23 @@ def booster_pass(
     goal: FloatArray,
     stem: FloatArray,
     c: FloatArray,
+    highest: FloatArray,
     state: FloatArray,
     out: FloatArray,
 ) -> None:
     """Fills `out` (fine) with the pressure; `goal` per row or fine, `stem` fine or of size 1, where it stands still.
 
-    `state` (3,): pressure, pilot's pressure, how far the supply has sunk; kept.
+    `highest`: what the supply gives, fine or of size 1; `state` (3,): pressure, pilot's pressure, how far the supply
+    has sunk; kept.
     """
-    per_row, still = goal.size == time_s.size, stem.size == 1
+    per_row, still, even = goal.size == time_s.size, stem.size == 1, highest.size == 1
     p, v, sunk = state[0], state[1], state[2]
     before = out[0] = p
     base = outflow(c[EP_REFERENCE] - c[EP_AMBIENT], c[EP_ATMOSPHERE])
     idle = c[EP_BAND] if c[EP_BAND_MODE] >= 3.0 else 0.0
+    # of the chamber as it is half way: more air through wider openings is all but the same, with the stem there
+    half_way = 1.0 + c[EP_AIR] * c[EP_MIDDLE]
+    air = c[EP_AIR] / half_way
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
@@ -149,9 +154,9 @@ def booster_pass(
             x, speed = (stem[0], 0.0) if still else (0.5 * (stem[f] + stem[f - 1]), (stem[f] - stem[f - 1]) / h)
             # what goes by the pressure goes by that in the middle of the step
             gauge = p + 0.5 * (p - before) - c[EP_AMBIENT]
-            taken = c[EP_AIR] * (gauge + c[EP_ATMOSPHERE]) * speed
-            chamber = (taken, 1.0 + c[EP_AIR] * max(x, 0.0))
-            up, most = weak_supply(p, h, chamber, c) if c[EP_CLIP] < FOREVER else (c[EP_FULL_UP], FOREVER)
+            chamber = (air * (gauge + c[EP_ATMOSPHERE]) * speed, 1.0 / half_way + air * max(x, 0.0))
+            gives = highest[0 if even else f]
+            up, most = weak_supply(p, h, chamber, gives, c) if gives < FOREVER else (c[EP_FULL_UP], FOREVER)
             full = (up, c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
             new = min(most, _chamber_step(p, (v, new_v), h, chamber, full, (c[EP_OPEN], idle)))
             if c[EP_TANK] < FOREVER:

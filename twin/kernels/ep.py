@@ -29,7 +29,6 @@ from twin.slots import (
     EP_FULL_DOWN,
     EP_FULL_UP,
     EP_GAIN,
-    EP_MIDDLE,
     EP_MIXED_S,
     EP_NOMINAL,
     EP_PORT_DOWN,
@@ -64,11 +63,12 @@ def ep_kernel(
     """
     c = through_ports(c)
     goal = _goal(time_s, np.ascontiguousarray(command, dtype=np.float64), offsets, c, p0)
+    highest = cut(c, time_s, offsets, time_s[0])
     if boosted(c):
         where = np.zeros(1) if stem is None else np.ascontiguousarray(stem)
-        booster_pass(time_s, offsets, goal, where, c, np.array([p0, p0, 0.0]), out)
+        booster_pass(time_s, offsets, goal, where, c, highest, np.array([p0, p0, 0.0]), out)
     elif bounded(c):
-        follow_bounded(time_s, offsets, goal, c, cut(c, time_s, offsets, time_s[0]), p0, np.zeros(2), out)
+        follow_bounded(time_s, offsets, goal, c, highest, p0, np.zeros(2), out)
     else:
         follow(time_s, offsets, goal, c, p0, out)
     if c[EP_STROKE] != 0.0 and stem is not None:
@@ -108,8 +108,6 @@ def through_ports(c: FloatArray) -> FloatArray:
     if boosted(c):
         narrow[[EP_FULL_UP, EP_FULL_DOWN]] /= ports
         if c[EP_CHAMBER] > 0.0:
-            middle = 1.0 + c[EP_MIDDLE] * c[EP_AIR] * np.array([1.0, c[EP_CHAMBER]])
-            narrow[[EP_FULL_UP, EP_FULL_DOWN]] *= middle[1] / middle[0]
             narrow[EP_AIR] *= c[EP_CHAMBER]
             narrow[EP_CLIP] = min(c[EP_CLIP], c[EP_NOMINAL] if ports[0] > 1.0 else FOREVER)
     else:

@@ -6,6 +6,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.slots import (
+    EP_CLIP,
     EP_CUT,
     EP_DRIFTS,
     EP_DRIFTS_S,
@@ -34,10 +35,11 @@ def supply(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, size: int, be
 
 
 def cut(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, began_s: float) -> FloatArray:
-    """Pressure at which a supply that swings cuts it off, fine; of size 1 where none does."""
+    """Pressure at which the supply cuts it off, fine where it swings; of size 1 where it does not, or nothing does."""
     if c[EP_CUT] == FOREVER:
-        return np.array([FOREVER])
-    return np.atleast_1d(c[EP_CUT] + _swing(c, time_s, offsets, int(offsets[-1]) + 1, began_s))
+        return c[EP_CLIP : EP_CLIP + 1]
+    highest: FloatArray = np.minimum(c[EP_CLIP], c[EP_CUT] + _swing(c, time_s, offsets, int(offsets[-1]) + 1, began_s))
+    return highest
 
 
 def _swing(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, size: int, began_s: float) -> float | FloatArray:

@@ -63,10 +63,10 @@ class Converter:
         """
         goal = self._goal(time_s, offsets, command)
         out = np.empty(int(offsets[1]) + 1)
+        highest = cut(self._c, time_s, offsets, self._began_s)
         if self._booster is not None:
-            booster_pass(time_s, offsets, goal, stem, self._c, self._booster, out)
+            booster_pass(time_s, offsets, goal, stem, self._c, highest, self._booster, out)
         elif self._bounded:
-            highest = cut(self._c, time_s, offsets, self._began_s)
             follow_bounded(time_s, offsets, goal, self._c, highest, self._plain, self._bound, out)
         else:
             follow(time_s, offsets, goal, self._c, self._plain, out)
