@@ -122,6 +122,17 @@ def _chamber_step(p: float, v: Pair, h: float, chamber: Pair, full: Pair, openin
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _chamber(gauge: float, x: float, speed: float, c: FloatArray) -> Pair:
+    """Rate at which the stem takes pressure, and volume, 1 with the stem half way.
+
+    More air through wider openings is all but the same, with the stem there: the openings are known best so.
+    """
+    half_way = 1.0 + c[EP_AIR] * c[EP_MIDDLE]
+    air = c[EP_AIR] / half_way
+    return air * (gauge + c[EP_ATMOSPHERE]) * speed, 1.0 / half_way + air * max(x, 0.0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def booster_pass(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -142,9 +153,6 @@ def booster_pass(
     before = out[0] = p
     base = outflow(c[EP_REFERENCE] - c[EP_AMBIENT], c[EP_ATMOSPHERE])
     idle = c[EP_BAND] if c[EP_BAND_MODE] >= 3.0 else 0.0
-    # of the chamber as it is half way: more air through wider openings is all but the same, with the stem there
-    half_way = 1.0 + c[EP_AIR] * c[EP_MIDDLE]
-    air = c[EP_AIR] / half_way
     for i in range(1, time_s.size):
         h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
@@ -154,7 +162,7 @@ def booster_pass(
             x, speed = (stem[0], 0.0) if still else (0.5 * (stem[f] + stem[f - 1]), (stem[f] - stem[f - 1]) / h)
             # what goes by the pressure goes by that in the middle of the step
             gauge = p + 0.5 * (p - before) - c[EP_AMBIENT]
-            chamber = (air * (gauge + c[EP_ATMOSPHERE]) * speed, 1.0 / half_way + air * max(x, 0.0))
+            chamber = _chamber(gauge, x, speed, c)
             gives = highest[0 if even else f]
             up, most = weak_supply(p, h, chamber, gives, c) if gives < FOREVER else (c[EP_FULL_UP], FOREVER)
             full = (up, c[EP_FULL_DOWN] * outflow(gauge, c[EP_ATMOSPHERE]) / base)
