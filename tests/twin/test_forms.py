@@ -34,6 +34,20 @@ def test_a_reading_bent_about_a_place_is_right_there(form: str, bend: float, xi:
     assert read == pytest.approx(DESIGN.travel * (xi + bend * shape), abs=1e-12)
 
 
+@pytest.mark.parametrize("form", ["about_open", "about_closed"])
+def test_the_same_curve_is_as_likely_in_whatever_number(form: str) -> None:
+    """All that is curved in a reading bent about one end is a bow, of the same size at a standard deviation of each."""
+    xi = np.linspace(0.0, 1.0, 21)
+
+    def curved(name: str) -> FloatArray:
+        values = tuple(p.scale for p in effect("lvdt_nonlinearity").form(name).parameters)
+        c = plant_with(("lvdt_nonlinearity", name, values)).coefficients(1.0).sensor
+        read = static_reading(xi * DESIGN.travel, np.zeros(xi.size), c)
+        return np.asarray(np.diff(read, 2))
+
+    np.testing.assert_allclose(np.abs(curved(form)), np.abs(curved("bow")), atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("form", "way"), [("leaves_range_closed", lambda xi: xi), ("leaves_range_open", lambda xi: 1 - xi)]
 )

@@ -43,7 +43,9 @@ _SWING = _parameter("swing", "amplitude of the S-shaped part, excess at 21 % of 
 
 
 def _bend(end: str) -> Parameter:
-    return _parameter("bend", f"excess of the reading at fully {end}, fraction of travel")
+    # A quarter of it is a bow, the rest a line: curves that are the same have to be as likely, in whatever number.
+    bend = _parameter("bend", f"excess of the reading at fully {end}, fraction of travel")
+    return replace(bend, starts=(-0.04, 0.04), scale=0.08)
 
 
 _LINE = Parameter(
