@@ -205,7 +205,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     known.recordings, known.notes, known.noise = tuple(recordings), [*notes, *timing_notes], noise
     progress("noise and events", 1.0)
     design = plant.design
-    sensing = sense(recordings, noise, design.travel, design.rate_limit)
+    sensing = sense(recordings, noise, design)
     on_change = sensing.band > 0.0
     reported, noise = (sensing.inserted(), as_reported(noise)) if on_change else ((), noise)
     inserted = (*plant.having(reported).inserted, *rounding_down(recordings, plant, sensing))

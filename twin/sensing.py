@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.ndimage import median_filter
 
+from control.design import DesignModel
 from logs.recording import Recording
 from twin.catalog import effect
 from twin.diagnosis import EffectTest, Estimate
@@ -21,6 +22,7 @@ from twin.events.evidence import Evidence
 from twin.events.scan import ON_CHANGE, Events, scan_events
 from twin.events.tails import together
 from twin.held_noise import HELD_NATS
+from twin.no_motion import jumps_of, no_motion
 from twin.noise.lattice import rounding_error
 from twin.noise.model import NoiseModel
 from twin.plant import Inserted, Plant
@@ -39,8 +41,6 @@ _HELD = 0.3
 _CLOCKED, _AGAIN = 0.05, 0.5
 #: ... or this share, where so many of them are held once more in the next row.
 _HUNG, _ON = 0.02, 0.5
-#: So many false readings, each among six that lie within so many sigmas, cannot have been the stem.
-_SINGLE, _STILL_SIGMAS = 5, 5.0
 #: Bands of two recordings are one band up to this ratio.
 _ALIKE = 1.2
 
@@ -99,12 +99,13 @@ class Sensing:
         return [e.false_position for e in self.events]
 
 
-def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fastest: float) -> Sensing:
+def sense(recordings: Sequence[Recording], noise: NoiseModel, design: DesignModel) -> Sensing:
     """Scans all recordings and accepts what all of them together leave no doubt about.
 
-    `fastest` is the design's rate limit [position/s]: a short turn of a moving stem is no false reading.
+    What a stem of that design could do is no false reading.
     """
-    events = tuple(_widened(scan_events(r, noise), r, noise, fastest) for r in recordings)
+    travel = design.travel
+    events = tuple(_widened(scan_events(r, noise), r, noise, design.rate_limit) for r in recordings)
     accepted: dict[str, dict[str, Estimate]] = {}
     rows = sum(r.n for r in recordings)
     false = sum(int(e.false_position.sum()) for e in events)
@@ -112,7 +113,7 @@ def sense(recordings: Sequence[Recording], noise: NoiseModel, travel: float, fas
     often = false >= 3 and false / rows > _LEAST_RATE
     enough = (drop.found and often) or _loud(recordings, events, noise)
     apart = enough and not together([e.tail for e in events]).heavy
-    if apart and (_false_beyond_motion(recordings, events, fastest) or _false_at_rest(recordings, events, noise)):
+    if apart and no_motion(recordings, [e.false_position for e in events], noise, design):
         accepted["sensor_dropouts"] = dict(drop.estimates)
     held_together = any(refreshed_together(r) for r in recordings)
     band = _band(events, max(_LEAST_STEP * travel, 2.0 * noise.position.sigma))
@@ -163,7 +164,7 @@ def _uneven(recordings: Sequence[Recording], step: float) -> float:
 
 def _loud(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:
     """Whether the false readings, few as they are, make an error far above the noise of all readings together."""
-    jumps = np.concatenate(_jumps(recordings, events))
+    jumps = np.concatenate(jumps_of(recordings, [e.false_position for e in events]))
     return float(np.sum(jumps**2)) > _LOUD**2 * noise.position.sigma**2 * sum(r.n for r in recordings)
 
 
@@ -181,35 +182,6 @@ def smallest_seen(noise: NoiseModel, scales: Scales, travel: float) -> tuple[Eff
 def _noise_without(noise: NoiseModel, step: float) -> float:
     """Noise of the position without the part that the reading's step makes."""
     return float(np.sqrt(max(noise.position.sigma**2 - step**2 / 12.0, 0.0)))
-
-
-def _false_beyond_motion(recordings: Sequence[Recording], events: Sequence[Events], fastest: float) -> bool:
-    """Whether the typical false reading lies further off than the stem could have gone and come back."""
-    periods = zip(_jumps(recordings, events), recordings, strict=True)
-    steps = np.concatenate([jumps / (fastest * recording.period_s) for jumps, recording in periods])
-    return bool(steps.size and np.median(steps) > 1.5)
-
-
-def _jumps(recordings: Sequence[Recording], events: Sequence[Events]) -> list[np.ndarray]:
-    """How far each false reading lies from the line between its good neighbours, per recording [position]."""
-    jumps = []
-    for recording, event in zip(recordings, events, strict=True):
-        good = np.flatnonzero(~event.false_position & np.isfinite(recording.position))
-        bad = np.flatnonzero(event.false_position & np.isfinite(recording.position))
-        between = np.interp(bad, good, recording.position[good]) if good.size else recording.position[bad]
-        jumps.append(np.abs(recording.position[bad] - between))
-    return jumps
-
-
-def _false_at_rest(recordings: Sequence[Recording], events: Sequence[Events], noise: NoiseModel) -> bool:
-    """Whether false readings came singly while the stem stood: no lag lets it go and come back between two readings."""
-    single = 0
-    for recording, event in zip(recordings, events, strict=True):
-        around = np.lib.stride_tricks.sliding_window_view(recording.position, 7)[:, (0, 1, 2, 4, 5, 6)]
-        still = np.ptp(around, axis=1) < _STILL_SIGMAS * noise.position.sigma  # NaN compares false
-        alone = ~np.lib.stride_tricks.sliding_window_view(event.false_position, 7)[:, (0, 1, 2, 4, 5, 6)].any(axis=1)
-        single += int(np.count_nonzero(event.false_position[3:-3] & still & alone))
-    return single >= _SINGLE
 
 
 def _widened(events: Events, recording: Recording, noise: NoiseModel, fastest: float) -> Events:

@@ -40,7 +40,7 @@ def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignMode
     pieces, _ = cut_at_holes(recordings)
     noise = estimate_noise(pieces)
     design = replace(design, travel=travel_between_stops(pieces, design) or design.travel)
-    sensing = sense(pieces, noise, design.travel, design.rate_limit)
+    sensing = sense(pieces, noise, design)
     look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.coarseness))
     if look.sigma_p is None:
         return retuned_fit(look).plant.design

@@ -48,6 +48,6 @@ def a_record(plant: Plant, seed: int = 1, twice: bool = False, n: int = 1500) ->
 def judged(record: Recording, design: DesignModel | None = None) -> tuple[StageResult, Judgement]:
     design = design or DesignModel()
     case = make_case([record], design, inserted_from(design))
-    sensing = sense([record], case.noise, design.travel, design.rate_limit)
+    sensing = sense([record], case.noise, design)
     result = judge(case, SearchRules(most=2), DecisionRules(), lambda _what, _share: None)
     return result, pronounce(result, sensing, 0.0, Weights())

@@ -108,7 +108,7 @@ def test_the_answer_gives_the_period_of_the_clock_and_what_was_fitted() -> None:
     stale = replace(record, position=np.interp(np.maximum(taken(t, 0.8838, 0.31), 0.0), t, record.position))
     case = make_case([stale], DesignModel(), held=True)
     result = judge(case, SearchRules(most=1), DecisionRules(), lambda _w, _s: None)
-    sensing = sense([stale], case.noise, DesignModel().travel, DesignModel().rate_limit)
+    sensing = sense([stale], case.noise, DesignModel())
     [cause] = pronounce(result, sensing, 0.0, Weights()).causes
     assert cause.name == "stale_samples"
     assert cause.parameters["period"].value == pytest.approx(0.8838, rel=1e-3)

@@ -129,7 +129,7 @@ def test_what_is_beyond_the_edges_by_a_little_is_no_gap(half: float, mse: float,
     found = last.findings
     more = replace(found, channel=replace(found.channel, half=half), none=replace(found.none, mse=mse))
     missed = replace(last, findings=more, accepted=more.none, explained=False, gap=True)
-    sensing = sense([record], case.noise, DesignModel().travel, DesignModel().rate_limit)
+    sensing = sense([record], case.noise, DesignModel())
     judgement = pronounce(replace(result, decisions=(*others, missed)), sensing, 0.0, Weights())
     assert judgement.verdict == verdict
 

@@ -62,6 +62,6 @@ def test_nothing_else_is_named_for_missing_codes(every: int) -> None:
 def test_the_error_of_the_zero_that_missing_codes_make_is_no_calibration(up: bool) -> None:
     made = a_record(Plant(DesignModel()), n=2400)
     record = replace(made, position=read(made.position, 3, up))
-    sensing = sense([record], estimate_noise([record]), DesignModel().travel, DesignModel().rate_limit)
+    sensing = sense([record], estimate_noise([record]), DesignModel())
     (found,) = rounding_down([record], Plant(DesignModel()), sensing)
     assert found.values == pytest.approx(((1.0 if up else -1.0) * STEP / 3.0,), rel=0.2)  # codes at the ends are unsure

@@ -114,7 +114,7 @@ def test_two_recordings_have_to_agree_about_the_band() -> None:
     noise = estimate_noise([plain])
 
     def band(*records: Recording) -> float:
-        return sense(list(records), noise, DESIGN.travel, DESIGN.rate_limit).band
+        return sense(list(records), noise, DESIGN).band
 
     assert band(held, held) == pytest.approx(BAND_IN, rel=0.05)
     assert band(held, plain) == band(held, reported(plain, 2.0 * BAND_IN)) == 0.0

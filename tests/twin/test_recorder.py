@@ -29,7 +29,7 @@ def stored(command_step: float, position_step: float, command: FloatArray | None
 
 
 def sensed(record: Recording) -> Sensing:
-    return sense([record], estimate_noise([record]), DESIGN.travel, DESIGN.rate_limit)
+    return sense([record], estimate_noise([record]), DESIGN)
 
 
 def test_what_is_stored_in_round_steps_beside_commands_alike_is_the_recorders() -> None:

@@ -24,7 +24,7 @@ def recorded() -> Recording:
 
 
 def found(recording: Recording) -> set[str]:
-    return set(sense([recording], estimate_noise([recording]), DESIGN.travel, DESIGN.rate_limit).accepted)
+    return set(sense([recording], estimate_noise([recording]), DESIGN).accepted)
 
 
 def spiked(position: FloatArray, rows: FloatArray) -> FloatArray:
@@ -39,6 +39,17 @@ def test_small_spikes_of_a_still_reading(count: int, named: bool) -> None:
     rows = np.random.default_rng(5).choice(recording.n, count, replace=False)
     assert SPIKE_IN > 15.0 * SIGMA
     assert ("sensor_dropouts" in found(replace(recording, position=spiked(recording.position, rows)))) is named
+
+
+@pytest.mark.parametrize(("swing_psi", "named"), [(0.3, True), (3.0, False)])
+def test_a_stem_that_never_stands_does_not_turn_without_crossing_the_deadband(swing_psi: float, named: bool) -> None:
+    """One reading a second: a stem could go as far, and it is always on its way."""
+    time_s = np.arange(1800.0)
+    wave, rng = np.sin(2.0 * np.pi * time_s / 30.0), np.random.default_rng(3)
+    position = 0.28 + 0.006 * wave + rng.normal(0.0, 4e-4, time_s.size)
+    rows = np.arange(60, 1800, 150)  # where it is fastest
+    slow = Recording("loop", time_s, 9.0 + swing_psi * wave, spiked(position, rows))
+    assert ("sensor_dropouts" in found(slow)) is named
 
 
 def test_a_healthy_reading_is_not_false() -> None:
@@ -93,7 +104,7 @@ def test_steps_are_sharp_whatever_the_number_of_codes(codes: int) -> None:
     fine = recorded()
     step_in = float(np.ptp(fine.position)) / (codes - 1)
     steps = replace(fine, position=step_in * np.round(fine.position / step_in))
-    assert sense([steps], estimate_noise([steps]), DESIGN.travel, DESIGN.rate_limit).sharp
+    assert sense([steps], estimate_noise([steps]), DESIGN).sharp
 
 
 def test_coarse_steps_of_a_slow_staircase_are_not_taken_for_held_readings() -> None:

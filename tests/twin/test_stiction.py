@@ -88,6 +88,15 @@ def test_the_breakaway_grows_at_rest() -> None:
     assert abs(young - (0.25 + 0.2 * K)) < 2e-3  # after 3 s only 0.08 psi
 
 
+@pytest.mark.parametrize("rate", [4e-4, 4e-3])
+def test_what_creeps_does_not_rest(rate: float) -> None:
+    """However slow the pressure goes, of a stem that it takes along no friction has the time to grow."""
+    at_s = np.arange(0.0, 40.0, 0.05)
+    creeps = np.concatenate([levels((MIDDLE, 1.0)), MIDDLE + 0.4 + rate / K * at_s])
+    slides = stem("grows_at_rest", (0.0, 10.0), creeps, 0.25)
+    np.testing.assert_allclose(stem("grows_at_rest", (0.3, 10.0), creeps, 0.25)[-200:], slides[-200:], atol=1e-5)
+
+
 def test_friction_that_grows_as_the_stem_slows_down_keeps_it_short_of_its_target() -> None:
     up = stem("short_of_target", (0.06, 1e-2, 0.0), levels((MIDDLE, 90.0)), 0.0)
     assert abs(up[-1] - (0.25 - 0.06 * K)) < 1e-4

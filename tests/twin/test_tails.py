@@ -37,7 +37,7 @@ def readings(tailed: bool, spikes: int = 0, size: float = 0.2, seed: int = 1) ->
 
 
 def sensed(record: Recording) -> Sensing:
-    return sense([record], estimate_noise([record]), DESIGN.travel, DESIGN.rate_limit)
+    return sense([record], estimate_noise([record]), DESIGN)
 
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])

@@ -20,7 +20,7 @@ from twin.slots import (
 )
 
 #: Speed of the target below which it rests where friction grows with the time at rest, as a share of the rate limit.
-_REST = 0.005
+_REST = 2e-5
 
 _BREAKAWAY = Parameter(
     name="breakaway",
@@ -61,7 +61,7 @@ _AGING = Parameter(
     kind="time",
     lower=0.05,
     upper=100.0,
-    starts=(1.0, 5.0),
+    starts=(1.0, 5.0, 15.0),
     scale=5.0,
     doc="time at rest after which 63 % of the breakaway is there",
     neutral=5.0,
