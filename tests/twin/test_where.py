@@ -33,6 +33,17 @@ def piece(truth: Toy, seed: int = 0, p_sigma: float = 0.03) -> WherePiece:
     return WherePiece(TIME, reading, design.position(model, DT), smooth, design.position(smooth, DT))
 
 
+@pytest.mark.parametrize("memory", [1.0, 3.5, 7.0])
+def test_noise_is_smoothed_whatever_memory_it_was_said_to_have(memory: float) -> None:
+    """A record seen through every second row once moved its play by noise, half of which was left on the pressure."""
+    noise = 0.01 * np.random.default_rng(4).standard_normal(6000)
+    left = smooth_pressure(noise, np.zeros(noise.size), 0.01, DT, memory)
+    assert np.std(left) < 0.25 * 0.01
+    step = np.where(np.arange(noise.size) < 3000, 0.0, 0.2)
+    found = smooth_pressure(noise + step, np.zeros(noise.size), 0.01, DT, memory)
+    assert np.abs(found - step)[2990:3010].max() < 0.05  # an edge is still one
+
+
 def test_stage_shares_find_the_stage_and_add_to_one() -> None:
     ep = where_map([piece(Toy(ep_tau_s=2.0))], NOISE, TRAVEL)
     assert ep.stage is not None

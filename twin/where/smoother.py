@@ -38,7 +38,7 @@ def smooth_pressure(
     chosen = np.where(known, excess, bridge)
     if noise_sigma <= 0.0:
         return model + chosen
-    levels: list[tuple[FloatArray, float]] = [(chosen, noise_sigma)]
+    levels: list[tuple[FloatArray, float, float]] = [(chosen, noise_sigma, noise_sigma)]
     open_here = np.ones(excess.size, dtype=bool)
     for width_s in [w for w in _WIDTHS_S if w <= widest_s] + [widest_s]:
         width = width_s / period_s
@@ -48,12 +48,15 @@ def smooth_pressure(
         mass = gaussian_filter1d(weight, width, mode="nearest")
         level = np.where(mass > 1e-3, total / np.maximum(mass, 1e-3), bridge)
         # independent readings under a bell: 2 sqrt(pi) width, fewer when the noise has memory
+        white = noise_sigma * min(1.0, np.sqrt(1.0 / (2.0 * np.sqrt(np.pi) * width)))
         sigma = noise_sigma * min(1.0, np.sqrt(correlation_samples / (2.0 * np.sqrt(np.pi) * width)))
         clash = np.zeros(excess.size, dtype=bool)
-        for narrow, narrow_sigma in levels[1:]:
-            clash |= np.abs(level - narrow) > _DIFFER * np.sqrt(max(narrow_sigma**2 - sigma**2, 0.01 * sigma**2))
+        for narrow, narrow_sigma, narrow_white in levels[1:]:
+            # of a memory that was made too long nothing would be left for two narrow bells to differ by
+            spread = max(narrow_sigma**2 - sigma**2, narrow_white**2 - white**2, 0.01 * sigma**2)
+            clash |= np.abs(level - narrow) > _DIFFER * np.sqrt(spread)
         # one clash shuts the whole bell: its neighbours average over the same edge
         open_here &= ~np.asarray(maximum_filter1d(clash.astype(np.int8), 2 * round(width) + 1), dtype=bool)
         chosen = np.where(open_here, level, chosen)
-        levels.append((level, sigma))
+        levels.append((level, sigma, white))
     return model + chosen
