@@ -135,7 +135,8 @@ V_HALF = 62
 V_STEP_EASES = 63  # share of V_STEP that is gone in the end, and with which time constant it goes [s]
 V_STEP_EASES_S = 64
 V_RINGS = 65  # 1: the plays are those of elastic rings, which stay stretched at a stop
-V_COUNT = 66
+V_RELAX_TARGET = 66  # as V_RELAX, of a spring by which the target of the stem is held
+V_COUNT = 67
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

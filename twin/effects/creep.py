@@ -13,6 +13,7 @@ from twin.slots import (
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
     V_RELAX,
+    V_RELAX_TARGET,
     V_RELAX_TAU_S,
     V_STRETCHED,
     V_STRETCHES,
@@ -132,6 +133,11 @@ def _relax(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_RELAX_TAU_S] = values[1]
 
 
+def _relax_target(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[V_RELAX_TARGET] = values[0] / c.design.compliance
+    c.valve[V_RELAX_TAU_S] = values[1]
+
+
 EFFECT = Effect(
     name="creep",
     stage="actuator",
@@ -140,7 +146,8 @@ EFFECT = Effect(
     "6 tail; tails apart: long of it with apart times the tail; pull: the same on the target of the stem, before its "
     "lag and rate limit (on the stem where the two act on each other); force: the same on the pressure before the "
     "play; stretch: reading = x + share z up to the stops, z as above and begun x at the start; "
-    "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail",
+    "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail; driven_spring: the same on the target of the stem, "
+    "friction included (on the stem where the two act on each other)",
     source="Findley, Lai, Onaran, Creep and Relaxation of Nonlinear Viscoelastic Materials (North-Holland 1976), ch. 5",
     forms=(
         Form("one_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail")), _one_tail),
@@ -156,6 +163,7 @@ EFFECT = Effect(
         Form("stretch_twice", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two"), _BEGUN), _stretch_twice),
         Form("force_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the force")), _force),
         Form("spring_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which the spring relaxes")), _relax),
+        Form("driven_spring_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which it relaxes")), _relax_target),
     ),
     absorbs=("compliance", "offset", "tau"),
 )

@@ -39,7 +39,7 @@ def _straight_play(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
+def look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
     """Linear interpolation in a uniform table, extended by its end slopes."""
     q = (p - p_first) / p_step
     i = min(max(int(q), 0), table.size - 2)
@@ -69,8 +69,8 @@ def _bent_play(
     for f in range(force.size):
         if varies:
             band = spread + widening[f]
-        bottom = max(low, min(high, _look_up(force[f] - band, p_first, p_step, closing)))
-        top = max(low, min(high, _look_up(force[f] + band, p_first, p_step, opening)))
+        bottom = max(low, min(high, look_up(force[f] - band, p_first, p_step, closing)))
+        top = max(low, min(high, look_up(force[f] + band, p_first, p_step, opening)))
         e = max(bottom, min(top, e))
         out[f] += weight * e
 
@@ -103,8 +103,8 @@ def common_start(
     bottom, top = np.empty(spreads.size), np.empty(spreads.size)
     for j in range(spreads.size):
         band = spreads[j] + widening
-        bottom[j] = max(stops[0], min(stops[1], _look_up(force - band, tables[0], tables[1], tables[2])))
-        top[j] = max(stops[0], min(stops[1], _look_up(force + band, tables[0], tables[1], tables[3])))
+        bottom[j] = max(stops[0], min(stops[1], look_up(force - band, tables[0], tables[1], tables[2])))
+        top[j] = max(stops[0], min(stops[1], look_up(force + band, tables[0], tables[1], tables[3])))
     low, high = min(bottom.min(), w0), max(top.max(), w0)
     for _ in range(50):
         v = 0.5 * (low + high)

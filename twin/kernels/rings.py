@@ -13,6 +13,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Tables
+from twin.kernels.play import look_up
 
 #: Halvings of a step of the pressure in which the stem comes to its stop.
 _HALVINGS = 45
@@ -26,28 +27,19 @@ def unstretched_rings(at: float, count: int) -> FloatArray:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _look_up(p: float, p_first: float, p_step: float, table: FloatArray) -> float:
-    """Linear interpolation in a uniform table, extended by its end slopes."""
-    q = (p - p_first) / p_step
-    i = min(max(int(q), 0), table.size - 2)
-    value: float = table[i] + (q - i) * (table[i + 1] - table[i])
-    return value
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
 def _between(at: float, tables: Tables) -> float:
     """The pressure in the middle of the two curves at a position."""
     first, step, closing, opening = tables
     low, high, wide = first, first + step, step
     for _ in range(_DOUBLINGS):  # never without end: nobody could stop a loop that is compiled
-        if _look_up(low, first, step, closing) + _look_up(low, first, step, opening) > 2.0 * at:
+        if look_up(low, first, step, closing) + look_up(low, first, step, opening) > 2.0 * at:
             low -= wide
-        if _look_up(high, first, step, closing) + _look_up(high, first, step, opening) < 2.0 * at:
+        if look_up(high, first, step, closing) + look_up(high, first, step, opening) < 2.0 * at:
             high += wide
         wide *= 2.0
     for _ in range(_HALVINGS):
         p = 0.5 * (low + high)
-        if _look_up(p, first, step, closing) + _look_up(p, first, step, opening) < 2.0 * at:
+        if look_up(p, first, step, closing) + look_up(p, first, step, opening) < 2.0 * at:
             low = p
         else:
             high = p
@@ -63,8 +55,8 @@ def _moved(
     total = 0.0
     for j in range(spreads.size):
         band = spreads[j] + wide
-        bottom = _look_up(p - band, first, step, closing)
-        top = _look_up(p + band, first, step, opening)
+        bottom = look_up(p - band, first, step, closing)
+        top = look_up(p + band, first, step, opening)
         new[j] = max(bottom, min(top, state[1 + j]))
         total += weights[j] * new[j]
     return total

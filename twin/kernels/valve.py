@@ -21,6 +21,7 @@ from twin.kernels.inertia import inertia_pass
 from twin.kernels.inputs import Bends, Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
@@ -49,6 +50,8 @@ from twin.slots import (
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_RELAX,
+    V_RELAX_TARGET,
+    V_RELAX_TAU_S,
     V_RINGS,
     V_ROUNDED,
     V_SHORT,
@@ -106,12 +109,14 @@ def couples(c: FloatArray, bends: Bends) -> bool:
 
 
 def coupled_coefficients(c: FloatArray) -> FloatArray:
-    """What the loops for target and stem that act on each other are given: to them inertia is a second lag."""
-    if c[V_INERTIA_S] <= _AT_ONCE_S:
+    """What the loops for target and stem that act on each other are given: to them inertia is a second lag, and a
+    spring is of the stem."""
+    if c[V_INERTIA_S] <= _AT_ONCE_S and c[V_RELAX_TARGET] == 0.0:
         return c
-    slower = c.copy()
-    slower[V_TAU_AFTER_S] += c[V_INERTIA_S]
-    return slower
+    known = c.copy()
+    known[V_TAU_AFTER_S] += c[V_INERTIA_S] if c[V_INERTIA_S] > _AT_ONCE_S else 0.0
+    known[V_RELAX] += c[V_RELAX_TARGET]
+    return known
 
 
 def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]], Callable[..., None]]:
@@ -152,7 +157,7 @@ def _stem(
         state, elements = begin(float(force[0]), float(widening[0]), *what, (start[0], at))
         steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
-        target = _target(force, widening, c, tables, plays, start[1], at)
+        target = _target(time_s, offsets, force, widening, c, tables, plays, start[1], at)
         if c[V_TARGET_CREEPS] != 0.0:
             creep_tails(time_s, offsets, c, held, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
@@ -160,7 +165,15 @@ def _stem(
 
 
 def _target(
-    force: FloatArray, widening: FloatArray, c: FloatArray, tables: Tables, plays: Plays, w0: float, at: float
+    time_s: FloatArray,
+    offsets: np.ndarray,
+    force: FloatArray,
+    widening: FloatArray,
+    c: FloatArray,
+    tables: Tables,
+    plays: Plays,
+    w0: float,
+    at: float,
 ) -> FloatArray:
     """What pulls the stem, from `w0`: Dahl's friction, or plays that begin `at` a place."""
     stops = (float(c[V_LOW]), float(c[V_HIGH]))
@@ -168,6 +181,10 @@ def _target(
         return dahl_target(force, widening, stops, tables, c[V_DAHL_HALF], c[V_DAHL], np.array([w0, np.nan]))
     if c[V_RINGS] > 0.0:
         return rings_target(force, widening, stops, tables, *plays, unstretched_rings(at, plays[0].size))
+    if c[V_RELAX_TARGET] != 0.0:
+        relax, state = (c[V_RELAX_TARGET], c[V_RELAX_TAU_S]), np.full(2, np.nan)
+        elements = np.full(plays[0].size, at)
+        return relaxing_target(time_s, offsets, force, widening, stops, tables, plays, relax, elements, state)
     return play_target(force, widening, stops, tables, *plays, at)
 
 

@@ -12,6 +12,7 @@ from twin.kernels import valve as kernels
 from twin.kernels.dahl import dahl_target
 from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
+from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.tails import held_by_tails, unstretched
 from twin.live.lag import Lag
@@ -31,6 +32,8 @@ from twin.slots import (
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
+    V_RELAX_TARGET,
+    V_RELAX_TAU_S,
     V_RINGS,
     V_STRETCHED,
     V_STRETCHES,
@@ -146,30 +149,36 @@ class Sliding:
         self._plays, self._w0 = (c.spreads, c.weights), w0
         self._elements: list[float] = []
         self._rings: FloatArray | None = None
+        self._relaxed = np.empty(0)
         self._shares = [(c.spreads[k : k + 1], float(c.weights[k])) for k in range(c.spreads.size)]
         self._tails = tails
         self._after = Lag(float(v[V_TAU_AFTER_S]))
         self._c, self._moving = v, np.array([x0, 0.0])
-        self._dahl = np.array([w0, np.nan])
+        self._dahl, self._relaxing = np.array([w0, np.nan]), np.full(2, np.nan)
 
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
-        target = self._target(force, widening)
+        target = self._target(time_s, offsets, force, widening)
         target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
         out = np.empty(force.size)
         kernels.move_stem(time_s, offsets, target, self._c, self._moving, out)
         return out
 
-    def _target(self, force: FloatArray, widening: FloatArray) -> FloatArray:
+    def _target(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         half, distance = self._c[V_DAHL_HALF], self._c[V_DAHL]
         if distance > 0.0:
             return dahl_target(force, widening, self._stops, self._tables, half, distance, self._dahl)
         if not self._elements:
             first = (float(force[0]), float(widening[0]), self._stops, self._tables, *self._plays, self._w0)
             self._elements = [common_start(*first)] * len(self._shares)
+            self._relaxed = np.array(self._elements)
             self._rings = unstretched_rings(self._elements[0], len(self._shares)) if self._c[V_RINGS] > 0.0 else None
         if self._rings is not None:
             return rings_target(force, widening, self._stops, self._tables, *self._plays, self._rings)
+        if self._c[V_RELAX_TARGET] != 0.0:
+            relax, what = self._c[[V_RELAX_TARGET, V_RELAX_TAU_S]], (self._stops, self._tables, self._plays)
+            begun = (self._relaxed, self._relaxing)
+            return relaxing_target(time_s, offsets, force, widening, *what, (relax[0], relax[1]), *begun)
         target = np.zeros(force.size)
         for k, (spread, weight) in enumerate(self._shares):
             one = play_target(force, widening, self._stops, self._tables, spread, _WHOLE, self._elements[k])
