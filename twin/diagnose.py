@@ -113,7 +113,9 @@ def diagnose(
 def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
     (case, look, sensing, late), settings, result = _found(known, settings, progress)
-    sure = tuple(felt_only(inside(settled(d, settings.rules, settings.weights))) for d in result.decisions)
+    sure = tuple(
+        felt_only(inside(settled(d, settings.rules, settings.weights), settings.rules)) for d in result.decisions
+    )
     result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)

@@ -14,11 +14,14 @@ from twin.catalog import effect
 from twin.choose import trim
 from twin.choose.decide import Decision
 from twin.choose.needless import without_needless
+from twin.choose.outside import inside
+from twin.choose.rules import DecisionRules
 from twin.choose.trim import spoken
 from twin.choose.weigh import Weights
 from twin.fit.space import Cause
 
 CALIBRATION = effect("ep_calibration")
+RULES = DecisionRules()
 
 
 def test_a_drift_of_a_trifle_beside_a_zero_is_a_wander() -> None:
@@ -55,3 +58,34 @@ def test_what_resembles_a_rival_by_a_trifle_is_the_wander_of_an_unmeasured_press
     assert after.explained is heard
     [clear] = spoken((replace(decision, floor=0.5),), Weights(), False)
     assert clear.explained
+
+
+def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:
+    """Beside a lag the jump takes next to nothing of the gap, a tenth, or most of it."""
+    lag = Cause("sensor_lag", effect("sensor_lag"), effect("sensor_lag").form("first_order"))
+    jump = Cause("lvdt_drift", effect("lvdt_drift"), effect("lvdt_drift").form("jump"))
+    for left, names in (
+        (3.0, ("sensor_lag",)),
+        (10.0, ("sensor_lag", "lvdt_drift")),
+        (60.0, ("sensor_lag", "lvdt_drift")),
+    ):
+        none, alone, both = (a_fit(causes, mse) for causes, mse in (((), 100.0), ((lag,), left), ((lag, jump), 1.0)))
+        findings: Any = SimpleNamespace(none=none, fits=(alone, both), score=lambda f: -f.mse)
+        decision = Decision(findings, both, True, True, 0.0)
+        assert inside(decision, RULES).names == names
+        assert inside(replace(decision, accepted=alone), RULES).names == ("sensor_lag",)
+
+
+@pytest.mark.parametrize(
+    ("gap", "left", "nats", "known"), [(146.0, 1.51, 4.0, True), (3.0, 1.51, 4.0, False), (146.0, 1.51, 20.0, False)]
+)
+def test_a_rival_that_does_hardly_better_gives_way_to_the_same_cause(
+    gap: float, left: float, nats: float, known: bool
+) -> None:
+    """A reading that is off by a constant, and, as nothing else is fitted, hears a trifle of the pressure."""
+    gauge = effect("lvdt_calibration")
+    off, hears = (Cause(gauge.name, gauge, gauge.form(name)) for name in ("gain_and_zero", "picks_up"))
+    none, plain, rival = a_fit((), gap), a_fit((off,), left), a_fit((hears,), 1.485)
+    findings: Any = SimpleNamespace(none=none, fits=(plain, rival), score=lambda f: nats if f is rival else 0.0)
+    decision = Decision(findings, rival, True, True, 0.0)
+    assert inside(decision, RULES).accepted is (plain if known else rival)

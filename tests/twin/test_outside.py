@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,8 +13,6 @@ from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
 from twin.case import make_case
 from twin.catalog import effect, effects
-from twin.choose.decide import Decision
-from twin.choose.outside import inside
 from twin.choose.search import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.effect import Scales
@@ -227,22 +223,6 @@ def test_a_jump_in_each_recording_is_found_wherever_it_is(at_s: float) -> None:
     found = fit(channel, space, starts_of(space, [], case.recordings), rounds=6)
     assert found.values()[-1] == pytest.approx(at_s, abs=1.0)
     assert found.mse < 5.0
-
-
-def test_a_rival_is_dropped_only_where_the_others_explain_the_gap() -> None:
-    """Beside a lag the jump takes next to nothing of the gap, a tenth, or most of it."""
-    lag = Cause("sensor_lag", effect("sensor_lag"), effect("sensor_lag").form("first_order"))
-    jump = Cause("lvdt_drift", effect("lvdt_drift"), effect("lvdt_drift").form("jump"))
-    for left, names in (
-        (3.0, ("sensor_lag",)),
-        (10.0, ("sensor_lag", "lvdt_drift")),
-        (60.0, ("sensor_lag", "lvdt_drift")),
-    ):
-        none, alone, both = (a_fit(causes, mse) for causes, mse in (((), 100.0), ((lag,), left), ((lag, jump), 1.0)))
-        findings: Any = SimpleNamespace(none=none, fits=(alone, both), score=lambda f: -f.mse)
-        decision = Decision(findings, both, True, True, 0.0)
-        assert inside(decision).names == names
-        assert inside(replace(decision, accepted=alone)).names == ("sensor_lag",)
 
 
 def a_fit(causes: tuple[Cause, ...], mse: float) -> Fit:
