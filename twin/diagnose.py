@@ -113,10 +113,9 @@ def diagnose(
 def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
     (case, look, sensing, late), settings, result = _found(known, settings, progress)
-    sure = tuple(
-        felt_only(inside(settled(d, settings.rules, settings.weights), settings.rules)) for d in result.decisions
-    )
-    result = replace(result, decisions=spoken(sure, settings.weights, bool(sensing.accepted)))
+    rules, weights = settings.rules, settings.weights
+    sure = tuple(felt_only(inside(settled(d, rules, weights), rules)) for d in result.decisions)
+    result = replace(result, decisions=spoken(sure, weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials)
@@ -126,7 +125,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     known.notes += [*itself.notes(case), *gauge]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
-    hearing = Hearing(look, retuned, sensing, converter, settings.weights, itself.disturbed, itself.swing is not None)
+    hearing = Hearing(look, retuned, sensing, converter, weights, itself.disturbed, itself.swing is not None)
     known.judgement = hearing.judgement(result)
     progress("held-out gap", 0.0)
     result, judgement, parts = hearing.held_out(result, known.judgement, progress, case.sigma_y)
@@ -138,10 +137,10 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
     known.notes += moved_numbers(case.base.design, final.design, [c.name for c in judgement.causes])
-    diagnosis = assembled(case, result, judgement, final, where, parts, itself.loud, settings.rules, known.notes)
+    diagnosis = assembled(case, result, judgement, final, where, parts, itself.loud, rules, known.notes)
     floor = diagnosis.gap.noise_floor * case.travel / 100.0
     apart = gap_by_condition(result, retuned, floor) if judgement.causes else None
-    proposal = propose(result, judgement, diagnosis.effects_tested, settings.rules, settings.weights)
+    proposal = propose(result, judgement, diagnosis.effects_tested, rules, weights)
     loop = closed_loop(known.recordings, final)
     plants = (case.base, retuned.plant, final)
     before, again, after = (tuple(predict_reading(p, t) for t in case.trials) for p in plants)
