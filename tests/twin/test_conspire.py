@@ -15,7 +15,8 @@ from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights, conspiracy, weigh
-from twin.fit.fitting import Fit
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
 
 #: The search that they share takes seconds.
@@ -77,3 +78,24 @@ def test_numbers_that_are_off_by_any_amount_are_worth_no_more_than_some_nats() -
     far, farther = (replace(stop, z=stop.z + shift) for shift in (5.0, 50.0))
     assert conspiracy(far, stop, phi) == 3.0
     assert abs(conspiracy(farther, far, phi)) == 3.0
+
+
+def test_a_cause_is_tried_in_its_other_forms_before_its_twin() -> None:
+    """A friction that grows along the stroke about its middle: hinged at an end it needs a deadband that is off."""
+    name, twin = "spring_asymmetry", "position_dependent_friction"
+    middle = Inserted(name, effect(name).form("hinged_mid"), (-0.012,))
+    decision = judged(a_record(Plant(DesignModel(), (middle,))))[0].decisions[-1]
+    findings, spaces = decision.findings, decision.accepted.space
+
+    def in_form(cause: str, form: str) -> Fit:
+        one = Cause(cause, effect(cause), effect(cause).form(form))
+        space = make_space(spaces.base, (one,), spaces.numbers, spaces.scales)
+        return fit(findings.channel, space, starts_of(space, []), rounds=8)
+
+    end, profile = in_form(name, "hinged_open"), in_form(twin, "profile")
+    lead = findings.score(end) - findings.score(profile)
+    profile = replace(profile, prior=profile.prior - 2.0 * (lead - 5.0))
+    told = replace(decision, accepted=end, findings=replace(findings, fits=(end, profile)), explained=True)
+    assert conspiracy(end, profile, findings.phi) > 0.5
+    found = without_conspiracy(told, DecisionRules(), Weights()).accepted
+    assert [(c.name, c.form.name) for c in found.space.causes if c.form] == [(name, "hinged_mid")]

@@ -3,29 +3,64 @@
 A gauge whose gain is wrong reads a stop where there is none, and the rest of the stroke as it is, if the compliance is
 wrong by as much the other way. Both have the same evidence where numbers are believed to a percent; but most machines
 have most of their numbers as designed, to far less than that, and then it is a coincidence. It weighs between twins
-only. Source: spike and slab, Mitchell, Beauchamp, J. Am. Stat. Assoc. 83 (1988) 1023.
+only, and between forms of one cause before that: which of them a search went on with is chance, where both do the same.
+Source: spike and slab, Mitchell, Beauchamp, J. Am. Stat. Assoc. 83 (1988) 1023.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
+from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, stands_in
-from twin.fit.fitting import Fit
+from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.space import Cause, make_space
+
+_ROUNDS = 8
 
 
 def without_conspiracy(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision with each cause replaced by its twin where only the latter leaves the design's numbers alone."""
     for cause in decision.accepted.space.causes if decision.explained else ():
-        twins = cause.effect.twins if cause.effect is not None else ()
-        same = [f for f in decision.findings.fits if f.mse <= decision.accepted.mse + rules.plain]
-        rivals = [f for f in same for twin in twins if stands_in(f, decision.accepted, cause.name, twin)]
-        best = max(rivals, key=decision.findings.score, default=None)
-        if best is not None and _likelier(decision, best, weights):
+        best = _likelier_twin(decision, cause, rules, weights)
+        if best is None:
+            continue
+        decision = _in_sparing_form(decision, cause, rules, weights)
+        best = _likelier_twin(decision, cause, rules, weights)
+        if best is not None:
             decision = replace(decision, accepted=best, rest=decision.rest_of(best))
     return decision
+
+
+def _likelier_twin(decision: Decision, cause: Cause, rules: DecisionRules, weights: Weights) -> Fit | None:
+    """The likeliest hypothesis with a twin in the place of a cause, if it is the likelier one for the numbers."""
+    twins = cause.effect.twins if cause.effect is not None else ()
+    same = [f for f in decision.findings.fits if f.mse <= decision.accepted.mse + rules.plain]
+    rivals = [f for f in same for twin in twins if stands_in(f, decision.accepted, cause.name, twin)]
+    best = max(rivals, key=decision.findings.score, default=None)
+    return best if best is not None and _likelier(decision, best, weights) else None
+
+
+def _in_sparing_form(decision: Decision, cause: Cause, rules: DecisionRules, weights: Weights) -> Decision:
+    """The decision with a cause in another form of no more numbers, if that leaves the design's alone and does as well.
+
+    Friction that grows along the stroke about its middle is two springs that are not alike, and a deadband that is off.
+    """
+    accepted, findings = decision.accepted, decision.findings
+    fits = []
+    for other in effect_causes(findings.channel, accepted.space.base):
+        if other.name != cause.name or other.form is None or cause.form is None or other.form.outside:
+            continue
+        if other.form is cause.form or len(other.form.parameters) > len(cause.form.parameters):
+            continue
+        causes = [other if c is cause else c for c in accepted.space.causes]
+        space = make_space(accepted.space.base, causes, accepted.space.numbers, accepted.space.scales)
+        fits.append(fit(findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS))
+    near = [f for f in fits if f.mse <= accepted.mse + rules.plain and _likelier(decision, f, weights)]
+    best = max(near, key=findings.score, default=None)
+    return decision if best is None else replace(decision, accepted=best, rest=decision.rest_of(best))
 
 
 def _likelier(decision: Decision, other: Fit, weights: Weights) -> bool:
