@@ -165,6 +165,14 @@ def test_a_number_that_leaves_no_more_than_a_healthy_machine_needs_no_effect_bes
         assert plainer(findings, findings.fits[0], replace(RULES, within=within)).names == (name,)
 
 
+@pytest.mark.parametrize(("left", "name"), [(1.9, "parameter:deadband"), (3.5, "linkage_lost_motion")])
+def test_however_large_the_gap_a_number_has_no_form_that_could_be_at_fault(left: float, name: str) -> None:
+    """A lost motion of a design's valve closes what a narrower deadband does in 1,000 of its gap, and the rest."""
+    fits = {("linkage_lost_motion",): (0.97, 1000.0), ("parameter:deadband",): (left, 100.0)}
+    findings = findings_of(fits, 1122.0)
+    assert plainer(findings, findings.fits[0], RULES).names == (name,)
+
+
 @pytest.mark.thorough
 def test_what_a_healthy_machine_does_anyway_is_not_named() -> None:
     creep = inserted("creep", "one_tail", 0.01, 30.0)
