@@ -104,7 +104,7 @@ def findings_of(fits: dict[tuple[str, ...], tuple[float, float]], before: float)
 def test_wrong_numbers_that_are_not_enough_give_way_to_the_effect_they_were_taken_for() -> None:
     fits = {
         ("creep",): (1.0, 1000.0),
-        ("parameter:tau",): (5.0, 200.0),
+        ("parameter:tau",): (1.9, 200.0),
         ("friction_drift", "lvdt_drift"): (0.9, 600.0),
     }
     assert decide(findings_of(fits, 1400.0), RULES).names == ("creep",)

@@ -127,7 +127,7 @@ def test_a_rival_from_outside_stays_where_numbers_alone_fall_short(left: float, 
     number = a_fit(left, COMPLIANCE)
     both = a_fit(1.2, COMPLIANCE, caused("lvdt_drift", "jump"))
     findings = found(1739.0, (number, -1000.0), (both, 0.0))
-    assert (inside(Decision(findings, both, True, True, 0.0)).names == number.names) is dropped
+    assert (inside(Decision(findings, both, True, True, 0.0), DecisionRules()).names == number.names) is dropped
 
 
 def test_readings_that_are_held_together_are_seen_to_be() -> None:
@@ -136,7 +136,7 @@ def test_readings_that_are_held_together_are_seen_to_be() -> None:
     assert record.pressure is not None
     held = Recording("valve", record.time_s, record.command, record.position[at], record.pressure[at])
     for one, together in ((held, True), (replace(held, pressure=record.pressure), False)):
-        sensing = sense([one], estimate_noise([one]), D.travel, D.rate_limit)
+        sensing = sense([one], estimate_noise([one]), D)
         assert "stale_samples" in sensing.accepted
         assert sensing.together is together
 
