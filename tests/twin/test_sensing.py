@@ -52,6 +52,17 @@ def test_a_stem_that_never_stands_does_not_turn_without_crossing_the_deadband(sw
     assert ("sensor_dropouts" in found(slow)) is named
 
 
+@pytest.mark.parametrize(("steps_in", "named"), [(0.0, True), (0.002, False)])
+def test_a_stem_that_stands_while_the_commands_cross_most_of_the_deadband(steps_in: float, named: bool) -> None:
+    """Among readings that lie together it has not gone away and come back; on its way it might have."""
+    time_s, rng = np.arange(1800.0), np.random.default_rng(3)
+    wave = np.sin(2.0 * np.pi * time_s / 30.0)
+    position = 0.28 + steps_in * np.abs((time_s + 15.0) % 30.0 - 15.0) + rng.normal(0.0, 4e-4, time_s.size)
+    rows = np.arange(67, 1800, 150)  # half way between two turns
+    busy = Recording("loop", time_s, 9.0 + 0.45 * DESIGN.deadband * wave, spiked(position, rows))
+    assert ("sensor_dropouts" in found(busy)) is named
+
+
 def test_a_healthy_reading_is_not_false() -> None:
     assert "sensor_dropouts" not in found(recorded())
 

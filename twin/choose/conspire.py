@@ -13,12 +13,11 @@ from dataclasses import replace
 
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
+from twin.choose.in_place import in_place_of
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, stands_in
-from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import Cause, make_space
-
-_ROUNDS = 8
+from twin.fit.fitting import Fit
+from twin.fit.space import Cause
 
 
 def without_conspiracy(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
@@ -49,18 +48,18 @@ def _in_sparing_form(decision: Decision, cause: Cause, rules: DecisionRules, wei
     Friction that grows along the stroke about its middle is two springs that are not alike, and a deadband that is off.
     """
     accepted, findings = decision.accepted, decision.findings
-    fits = []
-    for other in effect_causes(findings.channel, accepted.space.base):
-        if other.name != cause.name or other.form is None or cause.form is None or other.form.outside:
-            continue
-        if other.form is cause.form or len(other.form.parameters) > len(cause.form.parameters):
-            continue
-        causes = [other if c is cause else c for c in accepted.space.causes]
-        space = make_space(accepted.space.base, causes, accepted.space.numbers, accepted.space.scales)
-        fits.append(fit(findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS))
+    others = [c for c in effect_causes(findings.channel, accepted.space.base) if _no_freer(c, cause)]
+    fits = in_place_of(decision, cause, others)
     near = [f for f in fits if f.mse <= accepted.mse + rules.plain and _likelier(decision, f, weights)]
     best = max(near, key=findings.score, default=None)
     return decision if best is None else replace(decision, accepted=best, rest=decision.rest_of(best))
+
+
+def _no_freer(other: Cause, cause: Cause) -> bool:
+    """Whether it is the same cause in another known form of no more numbers."""
+    if other.name != cause.name or other.form is None or cause.form is None or other.form is cause.form:
+        return False
+    return not other.form.outside and len(other.form.parameters) <= len(cause.form.parameters)
 
 
 def _likelier(decision: Decision, other: Fit, weights: Weights) -> bool:

@@ -29,10 +29,12 @@ def outside_of(decision: Decision) -> Cause | None:
 def inside(decision: Decision, rules: DecisionRules) -> Decision:
     """The decision without what lies outside, where the known causes explain the gap as well, or those beside it do."""
     rival = outside_of(decision)
-    known = None if rival is None else _as_well(decision, rules)
+    if rival is None:
+        return decision
+    known = _as_well(decision, rules)
     if known is not None:
         return replace(decision, accepted=known, rest=decision.rest_of(known))
-    smaller = None if rival is None else dropped(decision, rival.name)
+    smaller = dropped(decision, rival.name)
     if smaller is None or not smaller.names or smaller.rest >= LEAVES or _numbers_fall_short(smaller):
         return decision
     return smaller

@@ -11,14 +11,13 @@ from dataclasses import replace
 from twin.catalog import effects
 from twin.choose.conspire import without_conspiracy
 from twin.choose.decide import Decision
+from twin.choose.in_place import in_place_of
 from twin.choose.rules import DecisionRules
 from twin.choose.trim import trimmed
 from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, stands_in, twins_of
-from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import Cause, make_space
-
-_ROUNDS = 8
+from twin.fit.fitting import Fit
+from twin.fit.space import Cause
 
 
 def with_usual_twins(decision: Decision, weights: Weights) -> Decision:
@@ -49,12 +48,8 @@ def _with_twin(decision: Decision, cause: Cause, twin: str) -> tuple[Decision, F
     with it too, which takes the place of any that was known.
     """
     accepted, effect = decision.accepted, effects()[twin]
-    fits = []
-    for form in effect.forms:
-        if cause.name in effect.same_as.get(form.name, ()):
-            causes = [Cause(twin, effect, form) if c is cause else c for c in accepted.space.causes]
-            space = make_space(accepted.space.base, causes, accepted.space.numbers, accepted.space.scales)
-            fits.append(fit(decision.findings.channel, space, starts_of(space, [accepted]), rounds=_ROUNDS))
+    same = [Cause(twin, effect, form) for form in effect.forms if cause.name in effect.same_as.get(form.name, ())]
+    fits = in_place_of(decision, cause, same)
     known = decision.findings.fits
     alike = [f for f in (*known, *fits) if stands_in(f, accepted, cause.name, twin)]
     best = max(alike, key=decision.findings.score)

@@ -37,37 +37,6 @@ def _step(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _pass(
-    time_s: FloatArray,
-    offsets: np.ndarray,
-    force: FloatArray,
-    widening: FloatArray,
-    stops: tuple[float, float],
-    tables: Tables,
-    plays: Plays,
-    relax: tuple[float, float],
-    elements: FloatArray,
-    state: FloatArray,
-    out: FloatArray,
-) -> None:
-    varies = widening.size > 1
-    if np.isnan(state[0]):
-        state[0] = state[1] = _step(force[0], widening[0], stops, tables, plays, elements, True)
-    w, late = state[0], state[1]
-    out[0] = w
-    for i in range(1, time_s.size):
-        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
-        stay = np.exp(-h / relax[1])
-        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
-            wide = widening[f if varies else 0]
-            for k in range(_ROUNDS):
-                loaded = force[f] - relax[0] * (w - late)
-                w = _step(loaded, wide, stops, tables, plays, elements, k == _ROUNDS - 1)
-            late = w + (late - w) * stay
-            out[f] = w
-    state[0], state[1] = w, late
-
-
 def relaxing_target(
     time_s: FloatArray,
     offsets: np.ndarray,
@@ -86,5 +55,20 @@ def relaxing_target(
     numbers at first, when all has relaxed. `force`, `widening`, `stops` as for the plays.
     """
     out = np.empty(force.size)
-    _pass(time_s, offsets, force, widening, stops, tables, plays, relax, elements, state, out)
+    varies = widening.size > 1
+    if np.isnan(state[0]):
+        state[0] = state[1] = _step(force[0], widening[0], stops, tables, plays, elements, True)
+    w, late = state[0], state[1]
+    out[0] = w
+    for i in range(1, time_s.size):
+        h = max((time_s[i] - time_s[i - 1]) / (offsets[i] - offsets[i - 1]), 1e-9)
+        stay = np.exp(-h / relax[1])
+        for f in range(offsets[i - 1] + 1, offsets[i] + 1):
+            wide = widening[f if varies else 0]
+            for k in range(_ROUNDS):
+                loaded = force[f] - relax[0] * (w - late)
+                w = _step(loaded, wide, stops, tables, plays, elements, k == _ROUNDS - 1)
+            late = w + (late - w) * stay
+            out[f] = w
+    state[0], state[1] = w, late
     return out
