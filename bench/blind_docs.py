@@ -2,7 +2,7 @@
 
 Each CHECK is the folder of a finished `lostmotion blind`. It becomes a page of its own, docs/blind/seed-SEED.md, which
 is never written again; remarks are added to it by hand. Then the summary in docs/blind.md and the table in the README
-are made anew from all pages (and from docs/calibration.md); without a CHECK, only that is done.
+are made anew from all pages (and from docs/strangers.md); without a CHECK, only that is done.
 """
 
 from __future__ import annotations
@@ -61,8 +61,8 @@ def between(text: str, new: str) -> str:
 def renewed(house: Path = HOUSE) -> dict[Path, str]:
     """docs/blind.md and the README as the pages say that they should be."""
     checks = published(house / "docs" / "blind")
-    calibration = (house / "docs" / "calibration.md").read_text(encoding="utf-8")
-    parts = {house / "docs" / "blind.md": summary(checks), house / "README.md": readme(checks, calibration)}
+    strangers = (house / "docs" / "strangers.md").read_text(encoding="utf-8")
+    parts = {house / "docs" / "blind.md": summary(checks), house / "README.md": readme(checks, strangers)}
     return {path: between(path.read_text(encoding="utf-8"), part) for path, part in parts.items()}
 
 

@@ -21,18 +21,18 @@ class Column:
     figures: Mapping[str, Figure | None]
 
 
-def newest_plant(calibration: str) -> Column:
-    """The first row of the table in docs/calibration.md whose first head is `plant`.
+def newest_plant(strangers: str) -> Column:
+    """The first row of the table in docs/strangers.md whose first head is `plant`.
 
     Raises: `ValueError` when there is none.
     """
-    for heads, *rows in tables(calibration):
+    for heads, *rows in tables(strangers):
         if heads[0] == "plant" and rows:
             cells = dict(zip(heads, rows[0], strict=True))
             found = {m.name: shown(m, figure(cells[m.column])) for m in GOALS}
-            link = cells["plant"].replace("](#", "](docs/calibration.md#")
+            link = cells["plant"].replace("](", "](docs/")
             return Column(f"{link} independent plant, seed {cells['seed']}: {cells['cases']} cases", "the plant", found)
-    raise ValueError("docs/calibration.md has no table of plants")
+    raise ValueError("docs/strangers.md has no table of plants")
 
 
 def newest_check(check: Check) -> Column:
@@ -51,9 +51,9 @@ def newest_checks(checks: Sequence[Check]) -> Column:
     return Column(head, f"the newest {len(checks)} checks", found)
 
 
-def readme(checks: Sequence[Check], calibration: str) -> str:
+def readme(checks: Sequence[Check], strangers: str) -> str:
     """The table; below it what is missed, and how the families differ."""
-    columns = [newest_check(checks[0]), newest_checks(checks[:POOL]), newest_plant(calibration)]
+    columns = [newest_check(checks[0]), newest_checks(checks[:POOL]), newest_plant(strangers)]
     rows = ([m.name, m.goal, *(_cell(m, column.figures[m.name]) for column in columns)] for m in GOALS)
     heads = ["", "target", *(column.head for column in columns)]
     return "\n".join([*table(heads, rows), *map(_missed, columns), "", *_families(checks[0])])

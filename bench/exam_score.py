@@ -84,7 +84,7 @@ def _stages() -> dict[str, str]:
 
 
 def text(answers: Sequence[Answer]) -> str:
-    """The figures with their intervals, the row of the table in docs/calibration.md, and every miss."""
+    """The figures with their intervals, the row of the table in docs/strangers.md, and every miss."""
     good = [a for a in answers if "error" not in a.said]
     broken = [f"  {a.case}: ended in an error: {a.said['error']}" for a in answers if "error" in a.said]
     figures = [*_figures(good), "", _row(good)] if good else ["  no case was answered"]

@@ -82,8 +82,14 @@ def test_pictures_are_small() -> None:
 def test_the_index_lists_every_page() -> None:
     index = text_of(HOUSE / "docs" / "index.md")
     pages = [page.relative_to(HOUSE / "docs").as_posix() for page in HOUSE.glob("docs/**/*.md")]
-    others = [page for page in pages if page != "index.md" and not page.startswith("blind/")]
+    others = [page for page in pages if page != "index.md" and not page.startswith(("blind/", "strangers/"))]
     assert [page for page in others if f"({page})" not in index] == []
+
+
+def test_the_page_of_strangers_lists_every_plant() -> None:
+    listed = text_of(HOUSE / "docs" / "strangers.md")
+    plants = [page.name for page in (HOUSE / "docs" / "strangers").iterdir()]
+    assert [name for name in plants if f"(strangers/{name}" not in listed] == []
 
 
 def test_the_blind_page_lists_every_published_check() -> None:

@@ -25,7 +25,7 @@ CHECKS = published(HOUSE / "docs" / "blind")
 def house(tmp_path) -> Path:
     """The documents of this repository, to be spoiled."""
     shutil.copytree(HOUSE / "docs" / "blind", tmp_path / "docs" / "blind")
-    for name in ("README.md", "docs/blind.md", "docs/calibration.md"):
+    for name in ("README.md", "docs/blind.md", "docs/strangers.md"):
         shutil.copy(HOUSE / name, tmp_path / name)
     return tmp_path
 
@@ -73,8 +73,8 @@ def test_a_page_that_is_gone_makes_the_summary_stale(house) -> None:
 
 
 def test_a_new_set_of_strangers_cases_makes_the_readme_stale(house) -> None:
-    row = "| [newer](#a-newer-plant) | 1 |" + " - |" * 11
-    spoil(house / "docs" / "calibration.md", r"(^\| plant \|.*\n.*\n)", rf"\1{row}\n")
+    row = "| [newer](strangers/newer-plant.md) | 1 |" + " - |" * 11
+    spoil(house / "docs" / "strangers.md", r"(^\| plant \|.*\n.*\n)", rf"\1{row}\n")
     assert stale(house) == ["README.md"]
 
 
@@ -193,9 +193,9 @@ def test_a_page_that_is_no_check_is_named(tmp_path) -> None:
 def test_the_newest_plant_is_the_first_row() -> None:
     columns = [measure.column for measure in MEASURES[1:]]
     heads = f"| plant | seed | cases | {' | '.join(columns)} |"
-    row = "| [x](#an-x) | 2 | 40 | 7 of 8 | 23 of 28 | 24 of 28 | 3 of 7 | 3 of 4 | 1.12 | - | 0.996 |"
+    row = "| [x](strangers/x-plant.md) | 2 | 40 | 7 of 8 | 23 of 28 | 24 of 28 | 3 of 7 | 3 of 4 | 1.12 | - | 0.996 |"
     column = newest_plant(f"# A\n\n| plan |\n|---|\n| 1 |\n\n{heads}\n|---|\n{row}\n")
-    assert "(docs/calibration.md#an-x)" in column.head
+    assert "(docs/strangers/x-plant.md)" in column.head
     assert column.figures["a cause named on a healthy valve"] == count(1, 8)
     assert column.figures["calibration error"] is None
 
