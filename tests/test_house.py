@@ -31,7 +31,6 @@ LONG_FUNCTIONS = {
     "tests/twin/report_example.py:diagnosis",
     "twin/kernels/coupled.py:coupled_steps",
     "twin/kernels/stem.py:stem_pass",
-    "twin/where/smoother.py:smooth_pressure",
 }
 
 

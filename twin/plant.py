@@ -16,6 +16,7 @@ from logs.recording import FloatArray
 from twin.effect import Coefficients, Form
 from twin.kernels.ep import ep_kernel
 from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
+from twin.kernels.sinking import sunk_by
 from twin.kernels.valve import valve_kernel
 from twin.place import Place
 from twin.refresh import Freshness
@@ -190,4 +191,4 @@ def core_at(c: Coefficients, reading: float) -> float:
 def stem_at(c: Coefficients, reading: float) -> float:
     """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
     low, high = stem_stops(c.valve)
-    return min(max(core_at(c, reading), low), high)
+    return min(max(core_at(c, reading) - sunk_by(c.sensor), low), high)

@@ -188,7 +188,8 @@ S_MASS_DAMPING = S_MASS_NATURAL_S + 1
 S_KINK = S_MASS_DAMPING + 1  # excess where two straight halves of the reading meet [fraction of travel]
 S_KINK_AT = S_KINK + 1  # and where that is [fraction of travel]
 S_WAVE = S_KINK_AT + 1  # one wave of a sine between the ends of travel [fraction of travel]
-S_COUNT = S_WAVE + 1
+S_SINKS_S = S_WAVE + 1  # in which a loose core goes to the far end of its play [s], or, < 0, the near; 0: it stays
+S_COUNT = S_SINKS_S + 1
 
 FOREVER = 1e30
 

@@ -155,7 +155,7 @@ def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:
             return 1.0
         rows = one.grid.offsets
         added.append(np.square(other.pressure[rows] - one.pressure[rows]))
-        left = noise_left(sigma, one.recording.period_s, noise.correlation_samples)
+        left = noise_left(sigma, one.recording.period_s, noise.correlation)
         expected.append(np.full(rows.size, left))
     ratio = float(np.mean(np.concatenate(added)) / max(float(np.mean(np.concatenate(expected))), 1e-300))
     return float(np.clip(ratio - (1.0 - NOISE_UNSURE), 0.0, 1.0))
@@ -186,7 +186,7 @@ def driven_about(plant: Plant, case: Case, careful: bool = True) -> tuple[Trial,
     noise, sigma = case.noise.pressure, case.sigma_p
     if noise is None or sigma is None:
         return case.trials
-    memory = noise.correlation_samples
+    memory = noise.correlation
     return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, memory, careful=careful)) for t in case.trials)
 
 

@@ -77,6 +77,15 @@ def kinked(x: float, _t: float) -> float:
     return x + TRAVEL * 0.02 * min(x / TRAVEL / 0.7, (1.0 - x / TRAVEL) / 0.3)
 
 
+def smaller(w: float) -> float:
+    spring, all_of_it, share = w / 0.19, TRAVEL / 0.19, -0.15 * w / TRAVEL
+    return (7.3 + spring + share * (7.3 + all_of_it)) / (1.0 + share) - 7.3 - spring
+
+
+def tighter(w: float) -> float:
+    return 1.48 / (1.0 - 0.15 * w / TRAVEL) - 1.48
+
+
 WAVE = tuple(0.01 * np.sin(0.2 * np.pi * np.arange(1, 11)))  # one period over the 59.9 s
 
 
@@ -116,6 +125,7 @@ SAME = {
     ),
     "spring": (plant_with("spring_asymmetry", "hinged_open", 0.1), PlainValve(k1=0.19 / 0.9, k2=0.19 / 1.1)),
     "nonlinear_spring": (plant_with("nonlinear_spring", "bow", 0.4), PlainValve(bend=bow)),
+    "area_kept": (plant_with("nonlinear_spring", "area_kept", -0.15), PlainValve(bend=smaller, widen=tighter)),
     "friction_spot": (plant_with("position_dependent_friction", "spot", 0.3, 0.5, 0.15), PlainValve(widen=spot)),
     "spring_breaks": (
         plant_with("nonlinear_spring", "breaks", -0.6, 0.2, 0.5),

@@ -171,3 +171,15 @@ def test_a_gauge_that_hums_starts_where_it_swings_about() -> None:
     spiked[[20, 30]] = 10.0  # two false readings are no swing
     blank = Recording("made", time_s, command, np.full(command.size, 0.4), spiked)
     assert make_trial(blank, 0.02).start_pressure == pytest.approx(10.7, abs=0.04)
+
+
+def test_a_first_reading_that_is_alone_is_not_where_it_starts() -> None:
+    """4.7 of its deviations: half a percent of travel at which a stem at rest stood until it moved."""
+    command, rng = np.repeat([11.0, 8.0], [60, 200]), np.random.default_rng(4)
+    time_s = 0.1 * np.arange(command.size)
+    position = 0.42 + rng.normal(0.0, 4e-4, command.size)
+    position[0] = 0.42 - 4.7 * 4e-4
+    blank = Recording("made", time_s, command, position, None)
+    assert make_trial(blank, 0.02).start_position == pytest.approx(0.42, abs=2e-4)
+    moving = replace(blank, position=0.42 + 0.002 * np.arange(command.size))  # a stem under way starts at its first
+    assert make_trial(moving, 0.02).start_position == pytest.approx(0.42, abs=0.003)

@@ -29,7 +29,7 @@ def piece(truth: Toy, seed: int = 0, p_sigma: float = 0.03) -> WherePiece:
     measured = true_pressure + p_sigma * rng.standard_normal(COMMAND.size)
     design = Toy()
     model = design.pressure(COMMAND, DT)
-    smooth = smooth_pressure(measured, model, p_sigma, DT)
+    smooth, _ = smooth_pressure(measured, model, p_sigma, DT)
     return WherePiece(TIME, reading, design.position(model, DT), smooth, design.position(smooth, DT))
 
 
@@ -37,10 +37,11 @@ def piece(truth: Toy, seed: int = 0, p_sigma: float = 0.03) -> WherePiece:
 def test_noise_is_smoothed_whatever_memory_it_was_said_to_have(memory: float) -> None:
     """A record seen through every second row once moved its play by noise, half of which was left on the pressure."""
     noise = 0.01 * np.random.default_rng(4).standard_normal(6000)
-    left = smooth_pressure(noise, np.zeros(noise.size), 0.01, DT, memory)
+    said = ((memory - 1.0) / (memory + 1.0)) ** np.arange(200)
+    left, _ = smooth_pressure(noise, np.zeros(noise.size), 0.01, DT, said)
     assert np.std(left) < 0.25 * 0.01
     step = np.where(np.arange(noise.size) < 3000, 0.0, 0.2)
-    found = smooth_pressure(noise + step, np.zeros(noise.size), 0.01, DT, memory)
+    found, _ = smooth_pressure(noise + step, np.zeros(noise.size), 0.01, DT, said)
     assert np.abs(found - step)[2990:3010].max() < 0.05  # an edge is still one
 
 
@@ -160,13 +161,13 @@ def test_smoother_removes_noise_and_keeps_edges() -> None:
     model = Toy(ep_tau_s=0.3).pressure(COMMAND, DT)
     measured = truth + 0.05 * rng.standard_normal(truth.size)
     measured[700:705] = np.nan
-    smooth = smooth_pressure(measured, model, 0.05, DT)
+    smooth, _ = smooth_pressure(measured, model, 0.05, DT)
     calm = np.ones(truth.size, dtype=bool)
     for edge in np.flatnonzero(np.diff(COMMAND)):
         calm[edge : edge + 40] = False
     assert np.sqrt(np.mean((smooth - truth)[calm] ** 2)) < 0.05 / 3
     assert np.abs(smooth - truth).max() < 0.25  # a plain filter 1 s wide misses these steps by more than 1 psi
-    same = smooth_pressure(truth, model, 0.0, DT)
+    same, _ = smooth_pressure(truth, model, 0.0, DT)
     assert np.allclose(same, truth)
 
 

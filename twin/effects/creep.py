@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.tails import PRESSED
 from twin.slots import (
     V_CREEP1,
     V_CREEP1_TAU_S,
@@ -12,12 +13,17 @@ from twin.slots import (
     V_CREEP2_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
+    V_HARD_HIGH,
+    V_HARD_LOW,
+    V_HIGH,
+    V_LOW,
     V_RELAX,
     V_RELAX_TARGET,
     V_RELAX_TAU_S,
     V_STRETCHED,
     V_STRETCHES,
     V_TARGET_CREEPS,
+    stem_stops,
 )
 
 #: The second time constant of the two-tail form is this many times the first.
@@ -112,6 +118,24 @@ def _pull_apart(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_TARGET_CREEPS] = 1.0
 
 
+def _press(c: Coefficients, values: Sequence[float]) -> None:
+    _pull(c, values)
+    _pressed(c, values[0])
+
+
+def _press_apart(c: Coefficients, values: Sequence[float]) -> None:
+    _pull_apart(c, values)
+    _pressed(c, values[0])
+
+
+def _pressed(c: Coefficients, share: float) -> None:
+    # What pulls the stem may be pressed on, before the tail, by as much as it takes to be at the stop at once.
+    low, high = stem_stops(c.valve)
+    c.valve[[V_HARD_LOW, V_HARD_HIGH]] = low, high
+    c.valve[V_HIGH] = c.valve[V_LOW] + (c.valve[V_HIGH] - c.valve[V_LOW]) / (1.0 - share)
+    c.valve[V_TARGET_CREEPS] = PRESSED
+
+
 def _stretch(c: Coefficients, values: Sequence[float]) -> None:
     _one_tail(c, values)
     c.valve[V_STRETCHES], c.valve[V_STRETCHED] = 1.0, values[2]
@@ -144,7 +168,8 @@ EFFECT = Effect(
     claim="A slow tail follows the fast response.",
     equations="reading = (1 - share) x + share z, dz/dt = (x - z) / tail; two tails: half of the share each, tail and "
     "6 tail; tails apart: long of it with apart times the tail; pull: the same on the target of the stem, before its "
-    "lag and rate limit (on the stem where the two act on each other); force: the same on the pressure before the "
+    "lag and rate limit (on the stem where the two act on each other); pressed: as pull, of a target that ends at the "
+    "upper stop / (1 - share) before its tails and at the stops after them; force: the same on the pressure before the "
     "play; stretch: reading = x + share z up to the stops, z as above and begun x at the start; "
     "spring: p = x/k + share (x - z)/k, dz/dt = (x - z) / tail; driven_spring: the same on the target of the stem, "
     "friction included (on the stem where the two act on each other)",
@@ -158,6 +183,12 @@ EFFECT = Effect(
             "pull_tails_apart",
             (_SHARE, _tail(2.0, (4.0, 10.0), "the shorter of the two time constants"), _APART, _LONG),
             _pull_apart,
+        ),
+        Form("pressed_tail", (_SHARE, _tail(4.0, (12.0, 50.0), "time constant of the tail of the pull")), _press),
+        Form(
+            "pressed_tails_apart",
+            (_SHARE, _tail(2.0, (4.0, 10.0), "the shorter of the two time constants"), _APART, _LONG),
+            _press_apart,
         ),
         Form("stretch", (_SHARE, _tail(4.0, (12.0, 50.0), "time in which it gives way"), _BEGUN), _stretch),
         Form("stretch_twice", (_SHARE, _tail(2.0, (5.0, 20.0), "the shorter of the two"), _BEGUN), _stretch_twice),

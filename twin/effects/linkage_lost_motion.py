@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_PLAY, S_ZERO
+from twin.slots import S_PLAY, S_SINKS_S, S_ZERO
 
 _PLAY = Parameter(
     name="play",
@@ -25,6 +25,19 @@ _ONE_SIDED = replace(
 )
 
 
+_SINKS = Parameter(
+    name="sinks",
+    kind="time",
+    lower=0.3,
+    upper=300.0,
+    starts=(4.0, 20.0),
+    scale=10.0,
+    doc="time in which a weight or a weak spring takes up the slack",
+    neutral=20.0,
+    size=False,
+)
+
+
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_PLAY] = values[0]
 
@@ -34,14 +47,30 @@ def _one_sided(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_ZERO] += 0.5 * values[0]
 
 
+def _sinks(c: Coefficients, values: Sequence[float]) -> None:
+    _apply(c, values)
+    c.sensor[S_SINKS_S] = values[1]
+
+
+def _sinks_back(c: Coefficients, values: Sequence[float]) -> None:
+    _apply(c, values)
+    c.sensor[S_SINKS_S] = -values[1]
+
+
 EFFECT = Effect(
     name="linkage_lost_motion",
     stage="sensor",
     claim="There is play between the stem and the LVDT core.",
-    equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side",
+    equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side; sinks: "
+    "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks",
     source="Nordin, Gutman, Automatica 38 (2002) 1633; Tao, Kokotovic, Adaptive Control of Systems with Actuator and "
     "Sensor Nonlinearities (Wiley 1996)",
-    forms=(Form("play", (_PLAY,), _apply), Form("one_sided", (_ONE_SIDED,), _one_sided)),
+    forms=(
+        Form("play", (_PLAY,), _apply),
+        Form("one_sided", (_ONE_SIDED,), _one_sided),
+        Form("sinks", (_PLAY, _SINKS), _sinks),
+        Form("sinks_back", (_PLAY, _SINKS), _sinks_back),
+    ),
     twins=("friction_in_motion",),
     absorbs=("deadband",),
 )

@@ -38,8 +38,7 @@ def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
 
 def _stem_bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
     _stem_bow(c, values)
-    shift = values[1] * swing(c.xi)
-    c.bend_at_stem(shift, shift)
+    c.bend_at_stem(*[values[1] * swing(c.xi)] * 2)
 
 
 def _stem_slope(c: Coefficients, values: Sequence[float]) -> None:
@@ -49,13 +48,19 @@ def _stem_slope(c: Coefficients, values: Sequence[float]) -> None:
 
 def _area(c: Coefficients, share: FloatArray) -> None:
     """Where the diaphragm's area is larger by `share`, every pressure pulls more: spring and friction alike."""
-    spring = c.xi * c.design.travel / c.design.compliance
+    spring = c.xi * _span(c)
     c.close_shift += (c.design.a1 + spring) * (1.0 / (1.0 + share) - 1.0)
     c.open_shift += (c.design.a2 + spring) * (1.0 / (1.0 + share) - 1.0)
 
 
 def _area_slope(c: Coefficients, values: Sequence[float]) -> None:
     _area(c, values[0] * (c.xi - 0.5))
+
+
+def _area_kept(c: Coefficients, values: Sequence[float]) -> None:
+    # The spring makes up for it over the whole stroke: the middle of the curves is the design's at both ends.
+    _area(c, values[0] * c.xi)
+    _shift(c, values[0] * c.xi * (c.design.offset + _span(c)) / (1.0 + values[0] * c.xi))
 
 
 def _area_bow(c: Coefficients, values: Sequence[float]) -> None:
@@ -207,9 +212,9 @@ EFFECT = Effect(
     equations="closing p = a1 + w/k + s(w), opening p = a2 + w/k + s(w), s = bow * 4 xi (1 - xi) + swing * S(xi); "
     "stem_*: s of the stem x; stem_slope: k (1 + slope (x/travel - 1/2)); "
     "area_*: p (1 + area (xi - 1/2) + area_mid 4 xi (1 - xi)) in place of p, xi = w/travel; stem_area: x/travel; "
+    "area_kept: p (1 + area xi), s = area xi ((a1 + a2)/2 + travel/k); area_step: p (1 + larger (E - 1/2)); "
     "step: s = stiffer travel/k width E, E = (1 + tanh(2 (xi - centre) / width)) / 2; "
     "hardens: s = harder travel/k xi^2 / 2; helper: s = stiffer travel/k max(xi - from, 0); "
-    "area_step: p (1 + larger (E - 1/2)); "
     "only told from it: snaps, stem_snaps: s = -drop E, steeper at the centre than the spring; "
     "breaks: from a time on p = (a1 + a2)/2 + takes +- (a1 - a2)/2 + (1 + rate) w/k",
     source="actuator data sheets (effective area over stroke; spring ranges such as 3 to 15 psi)",
@@ -220,6 +225,7 @@ EFFECT = Effect(
         Form("stem_bow_and_swing", (_BOW, _SWING), _stem_bow_and_swing, odds=_OTHERS),
         Form("stem_slope", (_SLOPE,), _stem_slope),
         Form("area_slope", (_AREA,), _area_slope),
+        Form("area_kept", (_AREA,), _area_kept),
         Form("area_bow", (_AREA_MID,), _area_bow),
         Form("area_slope_and_bow", (_AREA, replace(_AREA_MID, name="area_mid")), _area_slope_and_bow),
         Form("stem_area", (_AREA,), _stem_area),

@@ -14,48 +14,54 @@ from logs.recording import FloatArray
 from twin.fit.channel import pressure_fine
 from twin.fit.trial import Trial
 from twin.plant import Plant
-from twin.where.smoother import smooth_pressure
+from twin.where.smoother import LONGEST_S, WHITE, mean_variances, smooth_pressure
 
-WIDTH_S = 1.0
 #: The pressure stays within so many standard deviations of the readings of so many rows before and after.
 _OUTSIDE, _AROUND = 4.0, 3
 
 
 def smoothed_pressure(
-    plant: Plant,
-    trial: Trial,
-    sigma: float,
-    correlation_samples: float = 1.0,
-    width_s: float = WIDTH_S,
-    careful: bool = True,
+    plant: Plant, trial: Trial, sigma: float, correlation: FloatArray = WHITE, careful: bool = True
 ) -> FloatArray:
     """Smoothed measured pressure on the fine grid. `sigma`: standard deviation of the pressure noise per sample.
 
-    Without `careful` all that the smoothed measurement adds is believed; the difference of the two shows how much the
-    pressure is in doubt.
+    `correlation`: of that noise, at lags of 0, 1, ... rows. Without `careful` all that the smoothed measurement adds is
+    believed; the difference of the two shows how much the pressure is in doubt.
     """
     model = pressure_fine(plant, trial)
     measured = trial.recording.pressure
     if measured is None:
         return model
-    period_s = trial.recording.period_s
-    # where only some rows have a reading, a bell holds so many fewer
-    correlation_samples /= max(float(np.mean(np.isfinite(measured))), 1e-3)
-    at_rows = model[trial.grid.offsets]
-    extra = smooth_pressure(measured, at_rows, sigma, period_s, correlation_samples, width_s) - at_rows
-    noise = noise_left(sigma, period_s, correlation_samples, width_s)
+    period_s, at_rows = trial.recording.period_s, model[trial.grid.offsets]
+    smooth, noise = smooth_pressure(measured, at_rows, sigma, period_s, correlation)
+    extra = smooth - at_rows
     trusted = extra * _trust(extra, noise, period_s) if careful else extra
     fine = np.arange(trial.grid.n_fine)
     correction: FloatArray = np.interp(fine, trial.grid.offsets, trusted)
-    low, high = _bounds(measured, sigma)
     row = np.searchsorted(trial.grid.offsets, fine, side="right") - 1
-    return np.clip(model + correction, low[row], high[row])
+    corrected = model + correction
+    for low, high in (_no_further(corrected, model, trial.grid.offsets), _bounds(measured, sigma)):
+        corrected = np.clip(corrected, low[row], high[row])
+    return corrected
 
 
-def noise_left(sigma: float, period_s: float, correlation_samples: float = 1.0, width_s: float = WIDTH_S) -> float:
-    """Variance of what smoothing leaves of the readings' own noise."""
-    width = max(width_s / period_s, 0.5)
-    return float(sigma**2 * min(1.0, correlation_samples / (2.0 * np.sqrt(np.pi) * width)))
+def _no_further(corrected: FloatArray, model: FloatArray, rows: np.ndarray) -> tuple[FloatArray, FloatArray]:
+    """How low and high `corrected`, both on the fine grid, may be from each of the `rows` to the next: shape (n,) each.
+
+    As low and high as in these two rows, and beyond them as far as `model` goes itself. What a model that is a little
+    late lacks on the way up would otherwise be added to where it has arrived, and a play keeps so short a peak, too.
+    """
+    following = np.append(rows[1:], rows[-1])
+    low, high = np.minimum(model[rows], model[following]), np.maximum(model[rows], model[following])
+    below, above = low - np.minimum.reduceat(model, rows), np.maximum.reduceat(model, rows) - high
+    lower = np.minimum(corrected[rows], corrected[following]) - np.maximum(below, 0.0)
+    return lower, np.maximum(corrected[rows], corrected[following]) + np.maximum(above, 0.0)
+
+
+def noise_left(sigma: float, period_s: float, correlation: FloatArray = WHITE) -> float:
+    """Variance of what smoothing leaves of the readings' own noise, far from all edges."""
+    rows = max(round(2.0 * LONGEST_S / period_s), 1)
+    return float(sigma**2 * mean_variances(correlation, rows)[rows])
 
 
 def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]:
@@ -72,7 +78,7 @@ def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]
     return np.where(bridged, -np.inf, low), np.where(bridged, np.inf, high)
 
 
-def _trust(extra: FloatArray, noise: float, period_s: float) -> FloatArray:
+def _trust(extra: FloatArray, noise: FloatArray, period_s: float) -> FloatArray:
     """Local Wiener gain: 0 where the addition is no larger than its own noise, near 1 where it is."""
     power = gaussian_filter1d(extra**2, max(5.0 / period_s, 2.0), mode="nearest")
     gain: FloatArray = np.clip(1.0 - 2.5 * noise / np.maximum(power, 1e-300), 0.0, 1.0)

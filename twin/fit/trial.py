@@ -132,8 +132,9 @@ def _steady_rows(command: FloatArray) -> int:
 def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_], steady: int) -> float:
     """The first value: the mean over the readings before the signal leaves the band of its own noise.
 
-    One noisy reading of the pressure would move the play off for as long as the stem then takes to settle. A signal
-    that comes back, in the `steady` rows before the command changes, swings about where it is: the mean over those.
+    One noisy reading of the pressure would move the play off for as long as the stem then takes to settle; a first one
+    that is alone outside of the band is none of them. A signal that comes back, in the `steady` rows before the command
+    changes, swings about where it is: the mean over those.
     """
     values = signal[use][:200]
     if values.size < 4:
@@ -141,7 +142,10 @@ def _at_start(signal: FloatArray, use: npt.NDArray[np.bool_], steady: int) -> fl
     # second differences: the first ones of a stem that moves at once are motion
     noise = 1.4826 * float(np.median(np.abs(np.diff(values, 2)))) / np.sqrt(6.0)
     base = float(np.median(values[:4]))
-    away = np.flatnonzero(np.abs(values - base) > 4.0 * noise + 1e-12)
+    outside = np.abs(values - base) > 4.0 * noise + 1e-12
+    if outside[0] and not outside[1 : 1 + _BACK].any():
+        values, outside = values[1:], outside[1:]
+    away = np.flatnonzero(outside)
     still = values[: max(int(away[0]), 1)] if away.size else values
     waiting = signal[:steady][use[:steady]]
     if away.size and _swings(waiting, base, 4.0 * noise):

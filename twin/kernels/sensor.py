@@ -13,8 +13,8 @@ from scipy.interpolate import CubicSpline
 from logs.recording import FloatArray
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.mean import running_mean
-from twin.kernels.play import plain_play
 from twin.kernels.second_order import swinging
+from twin.kernels.sinking import core_of, first_core
 from twin.slots import (
     KNOTS,
     S_AT_OPEN,
@@ -81,8 +81,7 @@ def sensor_kernel(
         stem = leading(elapsed_s(time_s, offsets), stem, c[S_LEADS_S])
     core = stem
     if c[S_PLAY] > 0.0:
-        core = np.empty_like(stem)
-        plain_play(stem, 0.5 * c[S_PLAY], stem[0] if np.isnan(c[S_CORE]) else c[S_CORE], core)
+        core = core_of(elapsed_s(time_s, offsets), stem, c, first_core(c, stem[0], c[S_CORE]))
     if filters(c):
         t = elapsed_s(time_s, offsets)
         late = static_reading(core, t, c)

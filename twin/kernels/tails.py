@@ -18,9 +18,12 @@ from twin.slots import (
     V_REMEMBERS,
     V_STRETCHED,
     V_STRETCHES,
+    V_TARGET_CREEPS,
     stem_stops,
 )
 
+#: `V_TARGET_CREEPS` of a target that may be pressed on beyond the stops, before its tail.
+PRESSED = 2.0
 _CREEPS = ((V_CREEP1, V_CREEP1_TAU_S), (V_CREEP2, V_CREEP2_TAU_S))
 
 
@@ -36,6 +39,12 @@ def creep_tails(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, held: fl
     if held != 0.0:
         t, whole = elapsed_s(time_s, offsets), sum(share for share, _ in shares)
         out += held * sum(share / whole * np.exp(-t / max(tau_s, 1e-9)) for share, tau_s in shares)
+
+
+def within_stops(c: FloatArray, target: FloatArray) -> None:
+    """Ends a target that creeps at the stops of the stem, if what creeps may be pressed on beyond them."""
+    if c[V_TARGET_CREEPS] == PRESSED:
+        np.clip(target, *stem_stops(c), out=target)
 
 
 def unstretched(c: FloatArray, start: tuple[float, float]) -> tuple[float, float]:

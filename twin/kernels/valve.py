@@ -25,7 +25,7 @@ from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
-from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched
+from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched, within_stops
 from twin.slots import (
     V_BREAKAWAY,
     V_DAHL,
@@ -160,6 +160,7 @@ def _stem(
         target = _target(time_s, offsets, force, widening, c, tables, plays, start[1], at)
         if c[V_TARGET_CREEPS] != 0.0:
             creep_tails(time_s, offsets, c, held, target)
+            within_stops(c, target)
         target = lagged(time_s, offsets, target, c[V_TAU_AFTER_S])
         move_stem(time_s, offsets, target, c, np.array([start[0], 0.0]), out)
 

@@ -8,12 +8,12 @@ from collections import deque
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.play import plain_play
 from twin.kernels.sensor import filters, lags_s, leading, static_reading, swings
+from twin.kernels.sinking import core_of, first_core
 from twin.live.lag import Lag
 from twin.live.mean import Mean
 from twin.live.swing import Swing
-from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LEADS_S, S_PLAY, S_STEP, S_WINDOW_S, S_WINDOWS
+from twin.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LEADS_S, S_STEP, S_WINDOW_S, S_WINDOWS
 
 
 class Sensor:
@@ -25,8 +25,7 @@ class Sensor:
     def __init__(self, c: FloatArray, origin_s: float, x0: float, core: float = math.nan) -> None:
         self._c = c
         self._origin_s = origin_s
-        half = 0.5 * float(c[S_PLAY])
-        self._core = x0 if math.isnan(core) else max(x0 - half, min(x0 + half, core))
+        self._core = first_core(c, x0, core)
         lags, filters_of_two = [Lag(float(one)) for one in lags_s(c)], [Swing(*map(float, one)) for one in swings(c)]
         self._filters: list[Lag | Swing] = [*lags, *filters_of_two]
         self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
@@ -45,11 +44,8 @@ class Sensor:
         t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
         if c[S_LEADS_S] != 0.0:
             stem = leading(t, stem, c[S_LEADS_S])  # the first point is the last of the row before, and counts no more
-        if c[S_PLAY] > 0.0:
-            core = np.empty_like(stem)
-            plain_play(stem, 0.5 * c[S_PLAY], self._core, core)
-            self._core = float(core[-1])
-            stem = core
+        stem = core_of(t, stem, c, self._core)
+        self._core = float(stem[-1])
         if filters(c):
             late = self._static(stem, t)
             for one in self._filters:

@@ -14,7 +14,7 @@ from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
-from twin.kernels.tails import held_by_tails, unstretched
+from twin.kernels.tails import held_by_tails, unstretched, within_stops
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
 from twin.plant import curve_tables
@@ -159,7 +159,9 @@ class Sliding:
     def advance(self, time_s: FloatArray, offsets: np.ndarray, force: FloatArray, widening: FloatArray) -> FloatArray:
         """The stem on the fine points of the row."""
         target = self._target(time_s, offsets, force, widening)
-        target = self._after.follow(time_s, offsets, self._tails.follow(time_s, offsets, target))
+        target = self._tails.follow(time_s, offsets, target)
+        within_stops(self._c, target)
+        target = self._after.follow(time_s, offsets, target)
         out = np.empty(force.size)
         kernels.move_stem(time_s, offsets, target, self._c, self._moving, out)
         return out

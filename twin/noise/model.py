@@ -20,6 +20,7 @@ from twin.noise.robust import (
     autoregression,
     clipped,
     correlation_samples,
+    remembered,
     robust_sigma,
     whiten,
 )
@@ -66,6 +67,12 @@ class SignalNoise:
     def resting(self) -> float | None:
         """Sigma of the signal while it rests, or where the command is even; None where neither was seen."""
         return _resting(self.by_source)
+
+    @property
+    def correlation(self) -> FloatArray:
+        """From reading to reading, at lags 0, 1, ... as far as it may be known; of first order, where no filter is."""
+        first = (self.correlation_samples - 1.0) / (self.correlation_samples + 1.0)
+        return remembered(self.ar or (first,), MAX_LAG)
 
     def whiten(self, residual: FloatArray) -> FloatArray:
         """The residual, shape (n,), as independent values of unit variance if it were this noise; NaN stays NaN."""

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
+from scipy.signal import lfilter
 
 from logs.recording import FloatArray
 
@@ -114,6 +115,18 @@ def autoregression(rho: FloatArray, samples: float) -> tuple[tuple[float, ...], 
         if score < best_score:
             best, best_score = (coefficients, variance), score
     return tuple(float(value) for value in best[0]), float(best[1])
+
+
+def remembered(ar: Sequence[float], lags: int) -> FloatArray:
+    """Correlation of noise with these AR coefficients at lags 0, 1, ... `lags` - 1, shape (lags,).
+
+    Of its answer to one blow, over a time in which it has forgotten it.
+    """
+    blow = np.zeros(2 * lags)
+    blow[0] = 1.0
+    answer = lfilter([1.0], np.concatenate([[1.0], -np.asarray(ar, dtype=np.float64)]), blow)
+    covariance = np.array([np.dot(answer[: answer.size - lag], answer[lag:]) for lag in range(lags)])
+    return np.asarray(covariance / covariance[0])
 
 
 def whiten(residual: FloatArray, ar: Sequence[float], sigma: float, innovation_sigma: float) -> FloatArray:

@@ -1,62 +1,96 @@
 """Measured pressure with its noise taken off and its edges left on, fit to drive a model with play.
 
 A play ratchets on noise: driven by a raw reading it creeps to the outermost excursions. A plain filter would round the
-steps instead. So only what the reading adds to the model's pressure is filtered, at every sample as widely as the
-reading allows. Source: Lepski, "On a problem of adaptive estimation in Gaussian white noise", 1990 (choice of width).
+steps instead. So only what the reading adds to the model's pressure is averaged, at every row over as many rows before
+and, apart from them, after it as the readings allow: next to an edge only on the side where none is.
+Sources: Goldenshluger & Nemirovski, "On spatially adaptive estimation of nonparametric regression", 1997 (intersection
+of confidence intervals); Katkovnik, Egiazarian & Astola, "Local approximation techniques", 2006 (one-sided averages).
 """
 
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d
+import numpy.typing as npt
 
 from logs.recording import FloatArray
 
-_WIDTHS_S = (0.05, 0.1, 0.2, 0.4, 0.8, 1.6)  # standard deviations of the bell; "about 1 s" is where plain data ends up
-_DIFFER = 4.0
+LONGEST_S = 3.5  # to either side; what is still alike over that is no more than the readings' own noise anyway
+#: Standard deviations to either side of an average, outside of which its pressure is not.
+_SURE = 2.5
+_LONGER = 1.5  # from one average to the next
+
+#: The correlation, at lags of 0, 1, ... rows, of noise without a memory.
+WHITE: FloatArray = np.ones(1)
 
 
 def smooth_pressure(
-    measured: FloatArray,
-    model: FloatArray,
-    noise_sigma: float,
-    period_s: float,
-    correlation_samples: float = 1.0,
-    widest_s: float = 1.0,
-) -> FloatArray:
-    """A(c) + lowpass(p - A(c)), without delay, shape (n,): `model` is A(c), the pressure the model has for the command.
+    measured: FloatArray, model: FloatArray, noise_sigma: float, period_s: float, correlation: FloatArray = WHITE
+) -> tuple[FloatArray, FloatArray]:
+    """A(c) + average(p - A(c)), without delay, and the variance that is left of the readings' noise: shape (n,) each.
 
-    At each sample the widest bell (standard deviation up to `widest_s`) is used whose average does not differ from any
-    narrower one by more than four sigmas of their noise. Missing readings are bridged by their neighbours.
+    `model` is A(c), the pressure the model has for the command; `correlation`, shape (lags,), that of the noise, of
+    standard deviation `noise_sigma`. An average goes on to either side while a value within `_SURE` of its standard
+    deviations, and of those of all shorter ones, is left. Missing readings are bridged by their neighbours.
     """
     known = np.isfinite(measured)
     if not known.any():
-        return model.copy()
+        return model.copy(), np.full(model.size, np.inf)
     excess = np.where(known, measured - model, 0.0)
-    weight = known.astype(np.float64)
-    bridge = np.interp(np.arange(excess.size), np.flatnonzero(known), excess[known])
-    chosen = np.where(known, excess, bridge)
     if noise_sigma <= 0.0:
-        return model + chosen
-    levels: list[tuple[FloatArray, float, float]] = [(chosen, noise_sigma, noise_sigma)]
-    open_here = np.ones(excess.size, dtype=bool)
-    for width_s in [w for w in _WIDTHS_S if w <= widest_s] + [widest_s]:
-        width = width_s / period_s
-        if width < 0.3:
-            continue
-        total = gaussian_filter1d(excess * weight, width, mode="nearest")
-        mass = gaussian_filter1d(weight, width, mode="nearest")
-        level = np.where(mass > 1e-3, total / np.maximum(mass, 1e-3), bridge)
-        # independent readings under a bell: 2 sqrt(pi) width, fewer when the noise has memory
-        white = noise_sigma * min(1.0, np.sqrt(1.0 / (2.0 * np.sqrt(np.pi) * width)))
-        sigma = noise_sigma * min(1.0, np.sqrt(correlation_samples / (2.0 * np.sqrt(np.pi) * width)))
-        clash = np.zeros(excess.size, dtype=bool)
-        for narrow, narrow_sigma, narrow_white in levels[1:]:
-            # of a memory that was made too long nothing would be left for two narrow bells to differ by
-            spread = max(narrow_sigma**2 - sigma**2, narrow_white**2 - white**2, 0.01 * sigma**2)
-            clash |= np.abs(level - narrow) > _DIFFER * np.sqrt(spread)
-        # one clash shuts the whole bell: its neighbours average over the same edge
-        open_here &= ~np.asarray(maximum_filter1d(clash.astype(np.int8), 2 * round(width) + 1), dtype=bool)
-        chosen = np.where(open_here, level, chosen)
-        levels.append((level, sigma, white))
-    return model + chosen
+        return model + _bridged(excess, known), np.zeros(model.size)
+    lengths = _lengths(period_s)
+    # a memory is of so many rows, of which only some have a reading
+    spacing = known.size / np.count_nonzero(known)
+    variances = noise_sigma**2 * mean_variances(correlation, lengths[-1], spacing)
+    sides = [
+        _one_sided(excess[way], known[way], variances, lengths, way) for way in (slice(None), slice(None, None, -1))
+    ]
+    weights = [1.0 / variance for _, variance in sides]
+    total = weights[0] + weights[1]
+    near = total > 0.0
+    both = (sides[0][0] * weights[0] + sides[1][0] * weights[1]) / np.where(near, total, 1.0)
+    return model + _bridged(both, near), np.where(near, 1.0 / np.where(near, total, 1.0), np.inf)
+
+
+def mean_variances(correlation: FloatArray, longest: int, spacing: float = 1.0) -> FloatArray:
+    """Variance of the mean of 0, 1, ... `longest` readings, `spacing` rows apart, in that of one; inf of none."""
+    lags = np.arange(1, longest)
+    rho = np.interp(spacing * lags, np.arange(correlation.size), correlation, right=0.0)
+    sums, moments = np.cumsum(np.append(0.0, rho)), np.cumsum(np.append(0.0, lags * rho))
+    count = np.arange(1, longest + 1)
+    means = (1.0 + 2.0 * (sums - moments / count)) / count
+    return np.append(np.inf, np.clip(means, 1e-6, 1.0))
+
+
+def _lengths(period_s: float) -> list[int]:
+    lengths, most = [1], max(LONGEST_S / period_s, 1.0)
+    while (longer := max(lengths[-1] + 1, round(_LONGER * lengths[-1]))) <= most:
+        lengths.append(longer)
+    return lengths
+
+
+def _one_sided(
+    excess: FloatArray, known: npt.NDArray[np.bool_], variances: FloatArray, lengths: list[int], way: slice
+) -> tuple[FloatArray, FloatArray]:
+    """Averages over each row and those after it, and their variances (inf: no reading), both turned back as `way`."""
+    n = excess.size
+    sums, counts = np.append(0.0, np.cumsum(excess * known)), np.append(0, np.cumsum(known))
+    rows = np.arange(n)
+    low, high = np.full(n, -np.inf), np.full(n, np.inf)
+    found, found_variance = np.zeros(n), np.full(n, np.inf)
+    for length in lengths:
+        ends = np.minimum(rows + length, n)
+        count = counts[ends] - counts[rows]
+        mean, variance = (sums[ends] - sums[rows]) / np.maximum(count, 1), variances[count]
+        low, high = (
+            np.maximum(low, mean - _SURE * np.sqrt(variance)),
+            np.minimum(high, mean + _SURE * np.sqrt(variance)),
+        )
+        better = (low <= high) & (variance < found_variance)  # once apart, low and high stay so
+        found, found_variance = np.where(better, mean, found), np.where(better, variance, found_variance)
+    return found[way], found_variance[way]
+
+
+def _bridged(values: FloatArray, known: npt.NDArray[np.bool_]) -> FloatArray:
+    bridged: FloatArray = np.interp(np.arange(values.size), np.flatnonzero(known), values[known])
+    return bridged

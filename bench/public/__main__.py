@@ -1,0 +1,90 @@
+"""What the diagnosis makes of public recordings: `python -m bench.public CLONES --out DIR [--only WORD]`.
+
+CLONES holds clones of the repositories that `loops.py` and `machines.py` name, each under its own name; what is not
+there is left out. Prints the rows of the table in docs/real-data.md. What was answered once stays in DIR.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from bench.public import loops, machines
+from bench.public.recording import Recording
+
+_SETS: Mapping[str, Callable[[Path, Path], Iterator[Recording]]] = {
+    loops.FOLDER: loops.recordings,
+    "ValveActuator-DAMADICS-": machines.damadics,
+    "Measuring-Backlash-in-Popular-UART-Servos": machines.servos,
+    "camber-control": machines.cylinders,
+    "system_norm_koopman": machines.rig,
+}
+_LIMIT_S = 900.0
+_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+_HEAD = "| recording | known | gap: as given, re-tuned, with the causes, noise [%] | the answer | not told apart from |"
+
+
+def found(clones: Path, work: Path) -> Iterator[Recording]:
+    """All recordings of the sets that are there."""
+    for folder, recordings in _SETS.items():
+        if (clones / folder).is_dir():
+            yield from recordings(clones / folder, work)
+
+
+def answered(out: Path, one: Recording) -> dict[str, Any]:
+    """What `diagnose` says of a recording, or the `error` with which it ends."""
+    place = out / f"{one.group} {one.name}".replace(",", "").replace(" ", "-").replace(":", "")
+    if not (place / "diagnosis.json").exists():
+        words = [sys.executable, "-m", "app", "diagnose", str(one.file), *one.words, "--out", str(place)]
+        try:
+            subprocess.run(
+                words, env=os.environ | _ONE_THREAD, check=True, capture_output=True, text=True, timeout=_LIMIT_S
+            )
+        except subprocess.TimeoutExpired:
+            return {"error": f"no answer in {_LIMIT_S:g} s"}
+        except subprocess.CalledProcessError as error:
+            return {"error": error.stderr.strip().splitlines()[-1]}
+    said: dict[str, Any] = json.loads((place / "diagnosis.json").read_text(encoding="utf-8"))
+    return said
+
+
+def row(one: Recording, said: Mapping[str, Any]) -> str:
+    """A row of the table."""
+    if "error" in said:
+        return f"| {one.group}, {one.name} | {one.known} | - | {said['error']} | |"
+    gap = said["gap"]
+    keys = ("before", "retuned", "after", "noise_floor")
+    errors = ", ".join("-" if gap.get(key) is None else f"{gap[key]:.2g}" for key in keys)
+    causes = said["causes"]
+    names = ", ".join(f"{c['name']} {c['size']:.2g} {c['unit']} ({c['probability']:.2f})" for c in causes)
+    alike = ", ".join(sorted({name for group in said["confusable"] for name in group} - {c["name"] for c in causes}))
+    return f"| {one.group}, {one.name} | {one.known} | {errors} | {names or said['verdict']} | {alike} |"
+
+
+def main() -> None:
+    """Answers what is not answered yet, two at a time, and prints the table."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("clones", type=Path)
+    parser.add_argument("--out", type=Path, required=True)
+    parser.add_argument("--only", default="", help="a word that the group has to hold")
+    parser.add_argument("--processes", type=int, default=2)
+    options = parser.parse_args()
+    work = options.out / "files"
+    work.mkdir(parents=True, exist_ok=True)
+    every = [one for one in found(options.clones, work) if options.only in one.group]
+    print(_HEAD, "|---|---|---|---|---|", sep="\n")
+    with ThreadPoolExecutor(options.processes) as pool:
+        for one, said in zip(every, pool.map(partial(answered, options.out), every), strict=True):
+            print(row(one, said), flush=True)
+
+
+if __name__ == "__main__":
+    main()

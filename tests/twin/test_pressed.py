@@ -1,0 +1,50 @@
+"""Creep of what pulls the stem, which excess pressure presses on to the stop: against small steps of its law."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from logs.recording import FloatArray
+from tests.twin.test_relaxing import PRESSURE, TIME_S, D, K, creeping, stem
+from twin.plant import Inserted, Plant
+
+
+def stepped(share: float, tail_s: float, high: float, per: int = 100) -> FloatArray:
+    """By explicit steps of a millisecond: a plate between friction and the stops, and its tail, pull the stem."""
+    y, z, x, h, rows = 0.0, 0.0, 0.0, 0.1 / per, [0.0]
+    for k in range(1, TIME_S.size):
+        for n in range(per):
+            p = PRESSURE[k - 1] + (PRESSURE[k] - PRESSURE[k - 1]) * (n + 1) / per
+            y = max(K * (1.0 - share) * (p - D.a1), min(K * (1.0 - share) * (p - D.a2), y))
+            y = min(high, max(0.0, y))
+            z += h / tail_s * (share / (1.0 - share) * y - z)
+            x += h * np.clip((min(y + z, high) - x) / D.tau_s, -D.rate_limit, D.rate_limit)
+        rows.append(x)
+    return np.array(rows)
+
+
+def missing(share: float) -> tuple[Inserted, ...]:
+    from twin.catalog import effect
+
+    return (Inserted("reduced_travel", effect("reduced_travel").form("upper_stop"), (share,)),) if share else ()
+
+
+@pytest.mark.parametrize("lost", [0.0, 0.1])
+def test_it_is_the_law_in_small_steps(lost: float) -> None:
+    for plant in (
+        Plant(D, (*missing(lost), creeping("pressed_tail", 0.2, 20.0))),
+        Plant(D, (*missing(lost), creeping("pressed_tails_apart", 0.2, 20.0, 5.0, 0.0))),
+    ):
+        found = stem(plant)
+        assert np.abs(found - stepped(0.2, 20.0, (1.0 - lost) * D.travel)).max() < 1e-3 * D.travel
+
+
+def test_what_is_pressed_on_the_stop_does_not_creep_there() -> None:
+    """At 12.5 psi, 0.76 beyond the stop, a tail of a tenth is at the stop at once; without excess it stays short."""
+    pressed, pulled = (stem(Plant(D, (creeping(form, 0.05, 40.0),))) for form in ("pressed_tail", "pull_tail"))
+    at_stop = np.flatnonzero(TIME_S == 120.0)[0]
+    assert pressed[at_stop] == pytest.approx(D.travel, abs=0.01 * D.travel)
+    assert pulled[at_stop] < 0.975 * D.travel
+    resting = np.flatnonzero(TIME_S == 30.0)[0]  # away from the stops they are the same
+    assert pressed[resting] == pytest.approx(pulled[resting], abs=1e-6)

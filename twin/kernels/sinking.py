@@ -1,0 +1,45 @@
+"""A loose linkage between the stem and the core: the core goes along from the ends of the play, or sinks to one."""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+from logs.recording import FloatArray
+from twin.kernels.play import plain_play
+from twin.slots import S_PLAY, S_SINKS_S
+
+
+def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> FloatArray:
+    """Where the core is, at times `t` [s] like `stem`, from `start`; without play where the stem is."""
+    if c[S_PLAY] <= 0.0:
+        return stem
+    core = np.empty_like(stem)
+    if c[S_SINKS_S] == 0.0:
+        plain_play(stem, 0.5 * c[S_PLAY], start, core)
+    else:
+        _sinking(t, stem, 0.5 * c[S_PLAY], c[S_SINKS_S], start, core)
+    return core
+
+
+def first_core(c: FloatArray, stem: float, core: float) -> float:
+    """Where a core begins that is said to be at `core`; not a number: wherever it had the time to go."""
+    half = 0.5 * float(c[S_PLAY])
+    return stem + sunk_by(c) if np.isnan(core) else max(stem - half, min(stem + half, core))
+
+
+def sunk_by(c: FloatArray) -> float:
+    """How far from the stem a core stands that has had the time to sink to one end of the play [position]."""
+    return float(np.copysign(0.5 * c[S_PLAY], c[S_SINKS_S])) if c[S_PLAY] > 0.0 and c[S_SINKS_S] != 0.0 else 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _sinking(t: FloatArray, stem: FloatArray, half: float, sinks_s: float, start: float, out: FloatArray) -> None:
+    """Fills `out`: within `half` of the stem, and on the way to `half` beyond it in the sense of `sinks_s` [s]."""
+    end = half if sinks_s > 0.0 else -half
+    e = max(stem[0] - half, min(stem[0] + half, start))
+    out[0] = e
+    for f in range(1, t.size):
+        e = max(stem[f] - half, min(stem[f] + half, e))
+        e += (stem[f] + end - e) * -np.expm1((t[f - 1] - t[f]) / abs(sinks_s))
+        out[f] = e
