@@ -64,9 +64,16 @@ def row(one: Recording, said: Mapping[str, Any]) -> str:
     keys = ("before", "retuned", "after", "noise_floor")
     errors = ", ".join("-" if gap.get(key) is None else f"{gap[key]:.2g}" for key in keys)
     causes = said["causes"]
-    names = ", ".join(f"{c['name']} {c['size']:.2g} {c['unit']} ({c['probability']:.2f})" for c in causes)
+    names = ", ".join(_named(cause) for cause in causes)
     alike = ", ".join(sorted({name for group in said["confusable"] for name in group} - {c["name"] for c in causes}))
     return f"| {one.group}, {one.name} | {one.known} | {errors} | {names or said['verdict']} | {alike} |"
+
+
+def _named(cause: Mapping[str, Any]) -> str:
+    """A cause with its first parameter, which says how large it is."""
+    size = next(iter(cause["parameters"].values()), None)
+    how_large = f" {size['value']:.2g} {size['unit']}" if size else ""
+    return f"{cause['name']}{how_large} ({cause['probability']:.2f})"
 
 
 def main() -> None:

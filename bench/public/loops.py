@@ -39,6 +39,8 @@ def recordings(clone: Path, work: Path) -> Iterator[Recording]:
     """Every stretch of every loop once, the loops in the order of `_FULL`."""
     for loop, full in _FULL.items():
         files = [(path, _lines(path)) for path in sorted(clone.glob(f"plant_data/*/stic_*{loop}*.txt"))]
+        if not files:
+            continue
         gain, onset = _line([_readings(lines, full) for _, lines in files])
         design = servo(work / f"{loop}.toml", 1.0, 5.0, gain=gain, onset=onset)
         for path, lines in _distinct(files):
