@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 
 from twin.catalog import effect
+from twin.choose import trim
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
-from twin.choose.trim import _instead, doubtful, dropped
+from twin.choose.trim import _instead, doubtful, dropped, trimmed
+from twin.choose.weigh import Weights
 from twin.fit.space import Cause
 
 
@@ -94,3 +96,17 @@ def test_a_number_that_an_effect_took_along_is_accused_when_the_effect_goes(move
     assert smaller.accepted is (with_number if left else alone)
     number = dropped(replace(decision, accepted=with_number), "parameter:deadband")
     assert number is not None and number.accepted is alone  # what was dropped does not come back
+
+
+def test_an_effect_and_the_number_that_stands_for_it_are_not_taken_in_turn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The one went for the other without end: a case of a stranger's plant had no answer after 15 minutes."""
+    force, pair = one("flow_force", 1.0, 0.0), one("creep", 1.0, 0.0)
+    force.names, pair.names = ("flow_force", "linkage_lost_motion"), ("linkage_lost_motion", "parameter:tau")
+    turns = {force.names: pair, pair.names: force}
+    monkeypatch.setattr(trim, "weigh", lambda *_: SimpleNamespace(probability={}))
+    monkeypatch.setattr(trim, "alike", lambda *_: ())
+    monkeypatch.setattr(trim, "_without", lambda decision, *_: turns[decision.names])
+    monkeypatch.setattr(trim, "_instead", lambda _findings, smaller, _rules: smaller)
+    findings: Any = SimpleNamespace(none=one("parameter:tau", 50.0, 0.0))
+    decision = Decision(findings, force, explained=True, gap=True, rest=0.0)
+    assert trimmed(decision, DecisionRules(), Weights()).names == pair.names

@@ -58,7 +58,11 @@ def doubtful(name: str, probability: Mapping[str, float], here: Collection[str],
 
 
 def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
-    """The decision without its unlikely causes; as it was where the rest would leave the gap unexplained."""
+    """The decision without its unlikely causes; as it was where the rest would leave the gap unexplained.
+
+    Nor is one taken twice: an effect goes, the number that stood for it comes, goes for the effect, and so on.
+    """
+    taken = {frozenset(decision.names)}
     while decision.explained and len(decision.names) > 1:
         probability = weigh(decision, weights).probability
         beliefs = {name: belief(name, probability, alike(decision, name)) for name in decision.names}
@@ -72,6 +76,9 @@ def trimmed(decision: Decision, rules: DecisionRules, weights: Weights) -> Decis
         if rest >= rules.unexplained and smaller.mse >= rules.nothing_left * decision.floor:
             break
         smaller = _instead(decision.findings, smaller, rules)
+        if frozenset(smaller.names) in taken:
+            break
+        taken.add(frozenset(smaller.names))
         decision = replace(decision, accepted=smaller, rest=decision.rest_of(smaller))
     return decision
 
