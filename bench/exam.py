@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from bench.exam_score import Answer, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
+from twin.model_units import in_units_of
 
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
 _LIMIT_S = 900.0
@@ -97,6 +98,11 @@ def _miss_in(model: Path, record: Path, reading_in: NDArray[np.float64], out: Pa
     return float(np.sqrt(np.mean((simulated_in - reading_in) ** 2)))
 
 
+def _travel_in(design: Path) -> float:
+    """Travel of the design, of the thesis's where there is no file: recordings are in inches, whatever its unit."""
+    return in_units_of(load_design(design) if design.exists() else DesignModel(), "psi", "in").travel
+
+
 def _call(*words: str) -> None:
     command = [sys.executable, "-m", "app", *words]
     environment = os.environ | _ONE_THREAD
@@ -115,8 +121,7 @@ def main() -> None:
     with ThreadPoolExecutor(options.processes) as pool:
         for path in pool.map(partial(answered, options.folder, options.out), cases):
             print(f"{path.stem} answered", file=sys.stderr, flush=True)
-    design = options.folder / "design.toml"
-    travel_in = (load_design(design) if design.exists() else DesignModel()).travel
+    travel_in = _travel_in(options.folder / "design.toml")
     sealed = json.loads((options.folder / "SEALED.json").read_text(encoding="utf-8"))
     sealed = sealed.get("cases", sealed)
     said = {case: json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")) for case in cases}

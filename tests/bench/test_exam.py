@@ -17,6 +17,7 @@ from control.design import DesignModel, save_design
 from hal.errors import BadInput
 from logs.recording import Recording
 from twin.catalog import effect
+from twin.model_units import in_units_of
 from twin.plant import Inserted, Plant
 from twin.simulate import simulate_recording
 
@@ -165,6 +166,14 @@ def test_a_display_that_cuts_off_takes_its_half_step_along(zero: float, kept: bo
     assert exam._analogue(model).effects == ({"lvdt_calibration": low} if kept else {})
     alone = replace(DesignModel(), effects={"lvdt_calibration": low})
     assert exam._analogue(alone).effects == {"lvdt_calibration": low}
+
+
+def test_the_travel_is_in_inches_whatever_the_designs_units(tmp_path: Path) -> None:
+    assert exam._travel_in(tmp_path / "none.toml") == DesignModel().travel
+    metric = in_units_of(DesignModel(), "kPa", "mm")
+    save_design(metric, tmp_path / "design.toml")
+    assert metric.travel == pytest.approx(14.2875)
+    assert exam._travel_in(tmp_path / "design.toml") == pytest.approx(DesignModel().travel)
 
 
 @pytest.mark.thorough

@@ -42,8 +42,16 @@ def _knot(at: float) -> Parameter:
 
 
 _ACROSS = replace(
-    WIDTH, upper=0.9, starts=(0.1, 0.3), scale=0.15, doc="how much of the travel it covers, as a fraction", neutral=0.2
+    WIDTH,
+    upper=0.9,
+    starts=(0.1, 0.2, 0.3),
+    scale=0.15,
+    doc="how much of the travel it covers, as a fraction",
+    neutral=0.2,
 )
+#: Its valleys are narrow, where moves are few and far between: it is looked for on a finer net.
+_IN_BAND = replace(_height("extra half deadband within the band"), starts=(-0.25, -0.1, -0.04, 0.04, 0.1, 0.25, 0.8))
+_BAND_AT = replace(CENTRE, starts=(0.1, 0.3, 0.5, 0.7, 0.9))
 #: A burr cuts one way only; one that helps is none.
 _BURR = replace(
     _height("extra pressure at the centre, needed in one direction only"), lower=0.0, starts=(0.04, 0.25, 0.8)
@@ -131,7 +139,7 @@ EFFECT = Effect(
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _spot),
-        Form("band", (_height("extra half deadband within the band"), CENTRE, _ACROSS), _band),
+        Form("band", (_IN_BAND, _BAND_AT, _ACROSS), _band),
         Form("stem_spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _stem_spot),
         Form("closing_spot", (_BURR, CENTRE, WIDTH), _closing_spot),
         Form("opening_spot", (_BURR, CENTRE, WIDTH), _opening_spot),
