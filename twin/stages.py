@@ -19,7 +19,7 @@ from twin.choose.unbent import unbent
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit
 from twin.fit.numbers import nominal, retuned
-from twin.fit.smooth import noise_left, smoothed_pressure
+from twin.fit.smooth import BELIEVING, CAREFUL, noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.form_by_stem import formed_by_stem
 from twin.in_steps import in_steps
@@ -124,7 +124,7 @@ def _by_witness(case: Case, first: Decision) -> _Heard:
         if same_all_along or gauge_lies(min(read, left), left_of_position(case, designed)):
             silent = replace(first, accepted=first.findings.none, explained=False, rest=1.0)
             return _Heard(silent, designed, True, first.names)
-    believing = left_of_position(case, drive_by_measured(case, first, careful=False))
+    believing = left_of_position(case, drive_by_measured(case, first, BELIEVING))
     return _Heard(first, modelled, True) if gauge_wanders(read, left, believing) else _Heard(first, trials)
 
 
@@ -140,13 +140,13 @@ def pressure_doubt(case: Case, channel: Channel, converter: Decision) -> float:
     Believing the readings altogether lets their own noise drive the play, too: what they add counts as far as it
     is more than that noise.
     """
-    believing = position_channel(drive_by_measured(case, converter, careful=False), case.sigma_y)
+    believing = position_channel(drive_by_measured(case, converter, BELIEVING), case.sigma_y)
     difference = (channel.prediction(case.base) - believing.prediction(case.base))[channel.use]
     square = case.coarse.shifted(difference) if case.coarse is not None else float(np.mean(np.square(difference)))
-    return _beyond_noise(case, channel, believing) * square / channel.sigma**2
+    return _beyond_noise(case, channel, believing, _best(converter)) * square / channel.sigma**2
 
 
-def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:
+def _beyond_noise(case: Case, careful: Channel, believing: Channel, plant: Plant) -> float:
     """Share of what the pressure readings add, and only the believing believe, that may be more than their noise."""
     noise, sigma = case.noise.pressure, case.sigma_p
     added, expected = [], []
@@ -155,15 +155,15 @@ def _beyond_noise(case: Case, careful: Channel, believing: Channel) -> float:
             return 1.0
         rows = one.grid.offsets
         added.append(np.square(other.pressure[rows] - one.pressure[rows]))
-        left = noise_left(sigma, one.recording.period_s, noise.correlation)
-        expected.append(np.full(rows.size, left))
+        left = noise_left(plant, one, sigma, noise.correlation)
+        expected.append(np.where(np.isfinite(left), left, sigma**2))
     ratio = float(np.mean(np.concatenate(added)) / max(float(np.mean(np.concatenate(expected))), 1e-300))
     return float(np.clip(ratio - (1.0 - NOISE_UNSURE), 0.0, 1.0))
 
 
-def drive_by_measured(case: Case, converter: Decision, careful: bool = True) -> tuple[Trial, ...]:
+def drive_by_measured(case: Case, converter: Decision, care: float = CAREFUL) -> tuple[Trial, ...]:
     """The trials with their smoothed measured pressure, smoothed about the best converter model there is."""
-    return driven_about(_best(converter), case, careful)
+    return driven_about(_best(converter), case, care)
 
 
 def _best(converter: Decision) -> Plant:
@@ -178,16 +178,16 @@ def _believed(converter: Decision) -> Plant:
     return (converter.accepted if converter.explained else converter.findings.none).plant
 
 
-def driven_about(plant: Plant, case: Case, careful: bool = True) -> tuple[Trial, ...]:
+def driven_about(plant: Plant, case: Case, care: float = CAREFUL) -> tuple[Trial, ...]:
     """The trials with their measured pressure, smoothed about what `plant` makes of the commands; as they are without.
 
-    `careful`: see `smoothed_pressure`.
+    `care`: see `smoothed_pressure`.
     """
     noise, sigma = case.noise.pressure, case.sigma_p
     if noise is None or sigma is None:
         return case.trials
     memory = noise.correlation
-    return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, memory, careful=careful)) for t in case.trials)
+    return tuple(t.with_pressure(smoothed_pressure(plant, t, sigma, memory, care=care)) for t in case.trials)
 
 
 def _judge(

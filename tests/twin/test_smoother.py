@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tests.twin.trials import DESIGN, trial_of
-from twin.fit.smooth import noise_left, smoothed_pressure
+from twin.fit.smooth import smoothed_pressure
 from twin.noise.robust import remembered
 from twin.plant import Plant
 from twin.where.smoother import LONGEST_S, WHITE, mean_variances, smooth_pressure
@@ -63,7 +63,8 @@ def test_what_wanders_slowly_is_followed_and_a_memory_is_counted() -> None:
     correlation = np.append(1.0, 0.5 * 0.99 ** np.arange(1, 200))
     smooth, variance = smooth_pressure(slow + white, np.zeros(3000), 0.01 * np.sqrt(2.0), DT, correlation)
     assert np.std(smooth - slow) < 0.45 * 0.01
-    assert np.median(variance) > 5.0 * noise_left(0.01 * np.sqrt(2.0), DT)  # as if it had none
+    _, forgetful = smooth_pressure(slow + white, np.zeros(3000), 0.01 * np.sqrt(2.0), DT)
+    assert np.median(variance) > 4.0 * np.median(forgetful)
 
 
 def test_missing_readings_are_bridged_and_none_at_all_is_the_model() -> None:

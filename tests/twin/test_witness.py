@@ -24,6 +24,7 @@ from twin.choose.weigh import Weights
 from twin.diagnose import diagnose
 from twin.fit.channel import position_channel, pressure_channel
 from twin.fit.fitting import fit, starts_of
+from twin.fit.smooth import BELIEVING, CAREFUL
 from twin.fit.space import Cause, make_space
 from twin.form_by_stem import formed_by_stem
 from twin.plant import Inserted, Plant
@@ -40,7 +41,7 @@ PLAY = Inserted("ep_deadband", effect("ep_deadband").form("play"), (0.018,))
 
 def left_of(case: Case) -> tuple[float, float, float]:
     """What is left of the position by what stands out of the reading, by the model, and by all that was read."""
-    careful, all_of_it = (driven_about(case.base, case, careful=careful) for careful in (True, False))
+    careful, all_of_it = (driven_about(case.base, case, care) for care in (CAREFUL, BELIEVING))
     driven = (careful, driven_by_model(case.base, case.trials), all_of_it)
     read, modelled, believing = (left_of_position(case, trials) for trials in driven)
     return read, modelled, believing

@@ -13,17 +13,12 @@ from twin.slots import (
     V_CREEP2_TAU_S,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
-    V_HARD_HIGH,
-    V_HARD_LOW,
-    V_HIGH,
-    V_LOW,
     V_RELAX,
     V_RELAX_TARGET,
     V_RELAX_TAU_S,
     V_STRETCHED,
     V_STRETCHES,
     V_TARGET_CREEPS,
-    stem_stops,
 )
 
 #: The second time constant of the two-tail form is this many times the first.
@@ -119,20 +114,12 @@ def _pull_apart(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _press(c: Coefficients, values: Sequence[float]) -> None:
-    _pull(c, values)
-    _pressed(c, values[0])
+    _one_tail(c, values)
+    c.valve[V_TARGET_CREEPS] = PRESSED
 
 
 def _press_apart(c: Coefficients, values: Sequence[float]) -> None:
     _pull_apart(c, values)
-    _pressed(c, values[0])
-
-
-def _pressed(c: Coefficients, share: float) -> None:
-    # What pulls the stem may be pressed on, before the tail, by as much as it takes to be at the stop at once.
-    low, high = stem_stops(c.valve)
-    c.valve[[V_HARD_LOW, V_HARD_HIGH]] = low, high
-    c.valve[V_HIGH] = c.valve[V_LOW] + (c.valve[V_HIGH] - c.valve[V_LOW]) / (1.0 - share)
     c.valve[V_TARGET_CREEPS] = PRESSED
 
 

@@ -14,19 +14,21 @@ from logs.recording import FloatArray
 from twin.fit.channel import pressure_fine
 from twin.fit.trial import Trial
 from twin.plant import Plant
-from twin.where.smoother import LONGEST_S, WHITE, mean_variances, smooth_pressure
+from twin.where.smoother import WHITE, smooth_pressure
 
+#: How many times the variance of its noise what smoothing adds to the model has to be, to drive a valve; none at all.
+CAREFUL, BELIEVING = 3.0, 0.0
 #: The pressure stays within so many standard deviations of the readings of so many rows before and after.
 _OUTSIDE, _AROUND = 4.0, 3
 
 
 def smoothed_pressure(
-    plant: Plant, trial: Trial, sigma: float, correlation: FloatArray = WHITE, careful: bool = True
+    plant: Plant, trial: Trial, sigma: float, correlation: FloatArray = WHITE, care: float = CAREFUL
 ) -> FloatArray:
     """Smoothed measured pressure on the fine grid. `sigma`: standard deviation of the pressure noise per sample.
 
-    `correlation`: of that noise, at lags of 0, 1, ... rows. Without `careful` all that the smoothed measurement adds is
-    believed; the difference of the two shows how much the pressure is in doubt.
+    `correlation`: of that noise, at lags of 0, 1, ... rows. `care`: how many times its noise what the measurement adds
+    has to be to be believed. With `BELIEVING` all of it is; the difference shows how much is in doubt.
     """
     model = pressure_fine(plant, trial)
     measured = trial.recording.pressure
@@ -35,7 +37,7 @@ def smoothed_pressure(
     period_s, at_rows = trial.recording.period_s, model[trial.grid.offsets]
     smooth, noise = smooth_pressure(measured, at_rows, sigma, period_s, correlation)
     extra = smooth - at_rows
-    trusted = extra * _trust(extra, noise, period_s) if careful else extra
+    trusted = extra * _trust(extra, care * noise, period_s) if care > 0.0 else extra
     fine = np.arange(trial.grid.n_fine)
     correction: FloatArray = np.interp(fine, trial.grid.offsets, trusted)
     row = np.searchsorted(trial.grid.offsets, fine, side="right") - 1
@@ -58,10 +60,12 @@ def _no_further(corrected: FloatArray, model: FloatArray, rows: np.ndarray) -> t
     return lower, np.maximum(corrected[rows], corrected[following]) + np.maximum(above, 0.0)
 
 
-def noise_left(sigma: float, period_s: float, correlation: FloatArray = WHITE) -> float:
-    """Variance of what smoothing leaves of the readings' own noise, far from all edges."""
-    rows = max(round(2.0 * LONGEST_S / period_s), 1)
-    return float(sigma**2 * mean_variances(correlation, rows)[rows])
+def noise_left(plant: Plant, trial: Trial, sigma: float, correlation: FloatArray = WHITE) -> FloatArray:
+    """Variance of what smoothing leaves of the readings' own noise at each row, shape (n,); see `smoothed_pressure`."""
+    measured, model = trial.recording.pressure, pressure_fine(plant, trial)[trial.grid.offsets]
+    if measured is None:
+        return np.zeros(trial.recording.n)
+    return smooth_pressure(measured, model, sigma, trial.recording.period_s, correlation)[1]
 
 
 def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]:
@@ -80,6 +84,9 @@ def _bounds(measured: FloatArray, sigma: float) -> tuple[FloatArray, FloatArray]
 
 def _trust(extra: FloatArray, noise: FloatArray, period_s: float) -> FloatArray:
     """Local Wiener gain: 0 where the addition is no larger than its own noise, near 1 where it is."""
-    power = gaussian_filter1d(extra**2, max(5.0 / period_s, 2.0), mode="nearest")
-    gain: FloatArray = np.clip(1.0 - 2.5 * noise / np.maximum(power, 1e-300), 0.0, 1.0)
+    width, known = max(5.0 / period_s, 2.0), np.isfinite(noise)
+    added, left = np.where(known, np.square(extra), 0.0), np.where(known, noise, 0.0)
+    # both over the same rows: a row whose average is short adds more, and has more noise
+    power, expected = (gaussian_filter1d(values, width, mode="nearest") for values in (added, left))
+    gain: FloatArray = np.clip(1.0 - expected / np.maximum(power, 1e-300), 0.0, 1.0)
     return gain

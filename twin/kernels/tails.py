@@ -41,6 +41,17 @@ def creep_tails(time_s: FloatArray, offsets: np.ndarray, c: FloatArray, held: fl
         out += held * sum(share / whole * np.exp(-t / max(tau_s, 1e-9)) for share, tau_s in shares)
 
 
+def stops_of_pull(c: FloatArray) -> tuple[float, float]:
+    """Between what the target is held before its tails: further up where excess pressure is to press it on, by as much
+    as comes late, so that the stem is at its stop at once."""
+    low, high = float(c[V_LOW]), float(c[V_HIGH])
+    return (low, low + (high - low) / (1.0 - _late(c))) if c[V_TARGET_CREEPS] == PRESSED else (low, high)
+
+
+def _late(c: FloatArray) -> float:
+    return float(sum(c[share] for share, _ in _CREEPS))
+
+
 def within_stops(c: FloatArray, target: FloatArray) -> None:
     """Ends a target that creeps at the stops of the stem, if what creeps may be pressed on beyond them."""
     if c[V_TARGET_CREEPS] == PRESSED:
@@ -70,10 +81,11 @@ def held_by_tails(
 
     They still have what was before the recording, where the readings show it; no more than all of the travel in each.
     """
-    whole = float(sum(c[share] for share, _ in _CREEPS))
+    whole = _late(c)
     if whole <= 0.0 or c[V_REMEMBERS] == 0.0 or c[V_STRETCHES] != 0.0:
         return 0.0
-    at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
-    target = float(play_target(force[:1], widening[:1], (c[V_LOW], c[V_HIGH]), tables, *plays, at)[0])
+    stops = stops_of_pull(c)
+    at = common_start(float(force[0]), float(widening[0]), stops, tables, *plays, start[1])
+    target = float(play_target(force[:1], widening[:1], stops, tables, *plays, at)[0])
     least, most = whole * (c[V_LOW] - target), whole * (c[V_HIGH] - target)
     return float(min(max(start[0] - target, least), most))

@@ -25,7 +25,7 @@ from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.rounded import rounded_start, rounded_steps
 from twin.kernels.stem import stem_pass
-from twin.kernels.tails import creep_tails, held_by_tails, stretch_tails, unstretched, within_stops
+from twin.kernels.tails import creep_tails, held_by_tails, stops_of_pull, stretch_tails, unstretched, within_stops
 from twin.slots import (
     V_BREAKAWAY,
     V_DAHL,
@@ -148,8 +148,8 @@ def _stem(
     `held`: see `held_by_tails`.
     """
     low, high = stem_stops(c)
-    at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
     if couples(c, bends):
+        at = common_start(float(force[0]), float(widening[0]), (c[V_LOW], c[V_HIGH]), tables, *plays, start[1])
         stops = np.array([c[V_LOW], c[V_HIGH], low, high])
         c = coupled_coefficients(c)
         what = (c, stops, tables, plays, bends)
@@ -157,7 +157,7 @@ def _stem(
         state, elements = begin(float(force[0]), float(widening[0]), *what, (start[0], at))
         steps(time_s, offsets, force, widening, *what, state, elements, out)
     else:
-        target = _target(time_s, offsets, force, widening, c, tables, plays, start[1], at)
+        target = _target(time_s, offsets, force, widening, c, tables, plays, start[1])
         if c[V_TARGET_CREEPS] != 0.0:
             creep_tails(time_s, offsets, c, held, target)
             within_stops(c, target)
@@ -174,10 +174,10 @@ def _target(
     tables: Tables,
     plays: Plays,
     w0: float,
-    at: float,
 ) -> FloatArray:
-    """What pulls the stem, from `w0`: Dahl's friction, or plays that begin `at` a place."""
-    stops = (float(c[V_LOW]), float(c[V_HIGH]))
+    """What pulls the stem, from `w0`: Dahl's friction, or plays that begin at a place."""
+    stops = stops_of_pull(c)
+    at = common_start(float(force[0]), float(widening[0]), stops, tables, *plays, w0)
     if c[V_DAHL] > 0.0:
         return dahl_target(force, widening, stops, tables, c[V_DAHL_HALF], c[V_DAHL], np.array([w0, np.nan]))
     if c[V_RINGS] > 0.0:

@@ -14,7 +14,7 @@ from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
-from twin.kernels.tails import held_by_tails, unstretched, within_stops
+from twin.kernels.tails import held_by_tails, stops_of_pull, unstretched, within_stops
 from twin.live.lag import Lag
 from twin.live.stuck import Stuck
 from twin.plant import curve_tables
@@ -27,8 +27,6 @@ from twin.slots import (
     V_DAHL_HALF,
     V_FORCE_CREEP,
     V_FORCE_CREEP_TAU_S,
-    V_HIGH,
-    V_LOW,
     V_OUTER,
     V_OUTER_CENTRE,
     V_OUTER_SLOPE,
@@ -145,7 +143,7 @@ class Sliding:
     def __init__(self, c: Coefficients, x0: float, w0: float, tails: Tails) -> None:
         v = c.valve
         self._tables = curve_tables(c)
-        self._stops = (float(v[V_LOW]), float(v[V_HIGH]))
+        self._stops = stops_of_pull(v)
         self._plays, self._w0 = (c.spreads, c.weights), w0
         self._elements: list[float] = []
         self._rings: FloatArray | None = None
