@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import subprocess
 import sys
 import time
@@ -23,16 +22,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from bench.called import call
 from bench.exam_score import Answer, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
 from twin.model_units import in_units_of
 
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
-_LIMIT_S = 900.0
 _DIGITAL = ("sensor_quantization", "stale_samples", "sensor_dropouts")
 _HALF_A_STEP = (("sensor_quantization", "step"), ("lvdt_calibration", "zero"))
-_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 
 
 def answered(folder: Path, out: Path, case: str) -> Path:
@@ -55,7 +53,7 @@ def _diagnosed(folder: Path, out: Path, case: str) -> dict[str, object]:
     runs, design = sorted((folder / case).glob("*.csv")), folder / "design.toml"
     words = ["diagnose", *map(str, runs), *(["--design", str(design)] if design.exists() else []), "--out", str(out)]
     try:
-        _call(*words)
+        call(*words)
     except subprocess.SubprocessError as error:
         return {"error": str(getattr(error, "stderr", "") or error).strip()[-400:]}
     said = json.loads((out / "diagnosis.json").read_text(encoding="utf-8"))
@@ -91,7 +89,7 @@ def _analogue(model: DesignModel) -> DesignModel:
 
 
 def _miss_in(model: Path, record: Path, reading_in: NDArray[np.float64], out: Path) -> float:
-    _call("simulate", str(model), str(record), "--out", str(out))
+    call("simulate", str(model), str(record), "--out", str(out))
     with out.open(encoding="utf-8") as file:
         column = file.readline().strip().split(",").index("position_in")
         simulated_in = np.loadtxt(file, delimiter=",", usecols=column, ndmin=1)
@@ -101,12 +99,6 @@ def _miss_in(model: Path, record: Path, reading_in: NDArray[np.float64], out: Pa
 def _travel_in(design: Path) -> float:
     """Travel of the design, of the thesis's where there is no file: recordings are in inches, whatever its unit."""
     return in_units_of(load_design(design) if design.exists() else DesignModel(), "psi", "in").travel
-
-
-def _call(*words: str) -> None:
-    command = [sys.executable, "-m", "app", *words]
-    environment = os.environ | _ONE_THREAD
-    subprocess.run(command, env=environment, check=True, capture_output=True, text=True, timeout=_LIMIT_S)
 
 
 def main() -> None:

@@ -169,8 +169,8 @@ def effect_tables(inserted: Sequence[Inserted]) -> Mapping[str, Mapping[str, flo
 
 
 def reading_at(c: Coefficients, stem: float) -> float:
-    """What the static sensor reads of a stem position at the start."""
-    return float(static_reading(np.array([stem]), np.zeros(1), c.sensor)[0])
+    """What the static sensor reads of a stem position at the start: the inverse of `stem_at`."""
+    return float(static_reading(np.array([stem + sunk_by(c.sensor)]), np.zeros(1), c.sensor)[0])
 
 
 def core_at(c: Coefficients, reading: float) -> float:

@@ -8,15 +8,14 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 import subprocess
-import sys
 from collections.abc import Callable, Iterator, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Any
 
+from bench.called import LIMIT_S, call
 from bench.public import loops, machines
 from bench.public.recording import Recording
 
@@ -27,8 +26,6 @@ _SETS: Mapping[str, Callable[[Path, Path], Iterator[Recording]]] = {
     "camber-control": machines.cylinders,
     "system_norm_koopman": machines.rig,
 }
-_LIMIT_S = 900.0
-_ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 _HEAD = "| recording | known | gap: as given, re-tuned, with the causes, noise [%] | the answer | not told apart from |"
 
 
@@ -43,13 +40,10 @@ def answered(out: Path, one: Recording) -> dict[str, Any]:
     """What `diagnose` says of a recording, or the `error` with which it ends."""
     place = out / f"{one.group} {one.name}".replace(",", "").replace(" ", "-").replace(":", "")
     if not (place / "diagnosis.json").exists():
-        words = [sys.executable, "-m", "app", "diagnose", str(one.file), *one.words, "--out", str(place)]
         try:
-            subprocess.run(
-                words, env=os.environ | _ONE_THREAD, check=True, capture_output=True, text=True, timeout=_LIMIT_S
-            )
+            call("diagnose", str(one.file), *one.words, "--out", str(place))
         except subprocess.TimeoutExpired:
-            return {"error": f"no answer in {_LIMIT_S:g} s"}
+            return {"error": f"no answer in {LIMIT_S:g} s"}
         except subprocess.CalledProcessError as error:
             return {"error": error.stderr.strip().splitlines()[-1]}
     said: dict[str, Any] = json.loads((place / "diagnosis.json").read_text(encoding="utf-8"))

@@ -7,7 +7,10 @@ import pytest
 
 from logs.recording import FloatArray
 from tests.twin.test_relaxing import PRESSURE, TIME_S, D, K, creeping, stem
-from twin.plant import Inserted, Plant
+from twin.catalog import effect
+from twin.kernels.tails import held_by_tails
+from twin.plant import Inserted, Plant, curve_tables
+from twin.slots import V_REMEMBERS
 
 
 def stepped(share: float, tail_s: float, high: float, per: int = 100) -> FloatArray:
@@ -25,8 +28,6 @@ def stepped(share: float, tail_s: float, high: float, per: int = 100) -> FloatAr
 
 
 def missing(share: float) -> tuple[Inserted, ...]:
-    from twin.catalog import effect
-
     return (Inserted("reduced_travel", effect("reduced_travel").form("upper_stop"), (share,)),) if share else ()
 
 
@@ -48,3 +49,16 @@ def test_what_is_pressed_on_the_stop_does_not_creep_there() -> None:
     assert pulled[at_stop] < 0.975 * D.travel
     resting = np.flatnonzero(TIME_S == 30.0)[0]  # away from the stops they are the same
     assert pressed[resting] == pytest.approx(pulled[resting], abs=1e-6)
+
+
+def test_what_was_pressed_on_before_the_record_may_hold_the_stem_by_more() -> None:
+    """A tail has been beyond the stop, where what it is of had been pressed on to."""
+    held = []
+    for form in ("pressed_tail", "pull_tail"):
+        c = Plant(D, (creeping(form, 0.2, 30.0),)).coefficients(100.0)
+        c.valve[V_REMEMBERS] = 1.0
+        force = np.array([0.5 * (D.a1 + D.a2) + 0.3 / K])
+        what = (c.valve, curve_tables(c), (c.spreads, c.weights))
+        held.append(held_by_tails(force, np.zeros(1), *what, (0.3 + 0.07, 0.3)))
+    assert held[0] == pytest.approx(0.07)
+    assert held[1] == pytest.approx(0.2 * (D.travel - 0.3))

@@ -12,7 +12,7 @@ from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.diagnose import diagnose
 from twin.kernels.sinking import core_of
-from twin.plant import Inserted, Plant, stem_at
+from twin.plant import Inserted, Plant, reading_at, stem_at
 from twin.slots import S_COUNT, S_PLAY, S_SINKS_S
 
 
@@ -41,6 +41,7 @@ def test_a_core_has_sunk_before_the_record_begins(form: str, shift: float) -> No
     values = (0.02,) if form == "play" else (0.02, 9.0)
     c = Plant(DESIGN, (loose(form, *values),)).coefficients(100.0)
     assert stem_at(c, 0.3) == pytest.approx(0.3 - shift)
+    assert reading_at(c, stem_at(c, 0.3)) == pytest.approx(0.3)
 
 
 @pytest.mark.parametrize("form", ["sinks", "sinks_back"])

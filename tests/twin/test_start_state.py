@@ -182,4 +182,4 @@ def test_a_first_reading_that_is_alone_is_not_where_it_starts() -> None:
     blank = Recording("made", time_s, command, position, None)
     assert make_trial(blank, 0.02).start_position == pytest.approx(0.42, abs=2e-4)
     moving = replace(blank, position=0.42 + 0.002 * np.arange(command.size))  # a stem under way starts at its first
-    assert make_trial(moving, 0.02).start_position == pytest.approx(0.42, abs=0.003)
+    assert make_trial(moving, 0.02).start_position == pytest.approx(0.42, abs=1e-6)

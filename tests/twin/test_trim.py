@@ -102,10 +102,10 @@ def test_an_effect_and_the_number_that_stands_for_it_are_not_taken_in_turn(monke
     """The one went for the other without end: a case of a stranger's plant had no answer after 15 minutes."""
     force, pair = one("flow_force", 1.0, 0.0), one("creep", 1.0, 0.0)
     force.names, pair.names = ("flow_force", "linkage_lost_motion"), ("linkage_lost_motion", "parameter:tau")
-    turns = {force.names: pair, pair.names: force}
+    turns, left = {force.names: pair, pair.names: force}, iter(range(9))
     monkeypatch.setattr(trim, "weigh", lambda *_: SimpleNamespace(probability={}))
     monkeypatch.setattr(trim, "alike", lambda *_: ())
-    monkeypatch.setattr(trim, "_without", lambda decision, *_: turns[decision.names])
+    monkeypatch.setattr(trim, "_without", lambda decision, *_: turns[decision.names] if next(left) < 8 else None)
     monkeypatch.setattr(trim, "_instead", lambda _findings, smaller, _rules: smaller)
     findings: Any = SimpleNamespace(none=one("parameter:tau", 50.0, 0.0))
     decision = Decision(findings, force, explained=True, gap=True, rest=0.0)

@@ -16,7 +16,7 @@ from twin.fit.trial import Trial
 from twin.plant import Plant
 from twin.where.smoother import WHITE, smooth_pressure
 
-#: How many times the variance of its noise what smoothing adds to the model has to be, to drive a valve; none at all.
+#: What smoothing adds to the model drives a valve as far as its square is more than so many variances of its noise.
 CAREFUL, BELIEVING = 3.0, 0.0
 #: The pressure stays within so many standard deviations of the readings of so many rows before and after.
 _OUTSIDE, _AROUND = 4.0, 3

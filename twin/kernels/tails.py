@@ -87,5 +87,5 @@ def held_by_tails(
     stops = stops_of_pull(c)
     at = common_start(float(force[0]), float(widening[0]), stops, tables, *plays, start[1])
     target = float(play_target(force[:1], widening[:1], stops, tables, *plays, at)[0])
-    least, most = whole * (c[V_LOW] - target), whole * (c[V_HIGH] - target)
+    least, most = whole * (stops[0] - target), whole * (stops[1] - target)
     return float(min(max(start[0] - target, least), most))

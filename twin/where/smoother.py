@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from logs.recording import FloatArray
 
-LONGEST_S = 3.5  # to either side; what is still alike over that is no more than the readings' own noise anyway
+LONGEST_S = 3.5  # to either side: as many readings together as under a bell of 2 s
 #: Standard deviations to either side of an average, outside of which its pressure is not.
 _SURE = 2.5
 _LONGER = 1.5  # from one average to the next
