@@ -38,7 +38,7 @@ from logs.recording import Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
 from sim_device.sealed import Label
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 
 COARSE_IN = TRAVEL_IN / 256

@@ -35,7 +35,7 @@ from sim_device.physics.catalog import imperfections, make_physics, parameters
 from sim_device.physics.imperfection import Imperfection
 from sim_device.physics.offline import record
 from sim_device.sealed import GRADES, Cause, Label
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.insert import inserted_from
 

@@ -27,7 +27,7 @@ from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.sealed import Cause, Label
 from twin.catalog import effects
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.effect import Scales
 from twin.fit.channel import predict_reading, pressure_fine

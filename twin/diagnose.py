@@ -14,7 +14,7 @@ from twin.case import Case, Margin, make_case, widened
 from twin.choose.felt import felt_only
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.trim import spoken
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights

@@ -7,17 +7,29 @@ from dataclasses import dataclass, replace
 
 from twin.case import Case
 from twin.choose.decide import Decision
+from twin.choose.likelier import likelier
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
+from twin.closure import rms
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause, passes_for_noise
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.tolerance import forgiven, needless_number, within_tolerance
-from twin.upheld import explained_to_noise, nothing, shown_by_pressure, upheld
+from twin.upheld import doubted, explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
+
+
+def weightiest_first(judgement: Judgement, parts: GapParts, travel: float) -> Judgement:
+    """The judgement with its causes sorted by probability, equal ones by the error without them.
+
+    What the readings themselves show and no model predicts stands before those that are as likely.
+    """
+    before = 100.0 * rms(parts.before) / travel
+    causes = sorted(judgement.causes, key=lambda c: (-c.probability, -parts.without.get(c.name, before)))
+    return replace(judgement, causes=tuple(causes))
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,12 +51,25 @@ class Hearing:
     def held_out(
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
     ) -> tuple[StageResult, Judgement, GapParts]:
-        """Everything on unseen data, without the causes that are of no use there. `floor`: see `upheld`.
+        """Everything on unseen data, without the causes that are of no use there; of causes that are as likely the one
+        first without which most of the gap is left. `floor`: see `upheld`.
+        """
+        result, judgement, parts = self._heard(result, judgement, progress, floor)
+        return result, weightiest_first(judgement, parts, self.case.travel), parts
+
+    def _heard(
+        self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
+    ) -> tuple[StageResult, Judgement, GapParts]:
+        """What unseen data leave standing.
 
         Where what is behind the pressure would take with it what the pressure shows by itself, that is heard alone.
         """
         result, judgement, parts = self._needed(result, judgement, progress, floor)
         upholds = self._upheld(result, judgement, parts, floor)
+        if upholds[1].verdict == "unexplained" and (other := self._believed(result, judgement)) is not None:
+            result, judgement = other, self.judgement(other)
+            parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
+            upholds = self._upheld(result, judgement, parts, floor)
         shown = shown_by_pressure(result)
         behind = {c.name for c in judgement.causes} - set(shown)
         if upholds[1].verdict != "unexplained" or not shown or not behind:
@@ -54,6 +79,15 @@ class Hearing:
         parts = heldout_parts(self.case, less, alone, self.retuned, self.sensing, progress)
         parts, alone = self._upheld(less, alone, parts, floor)
         return (less, alone, parts) if alone.causes else (result, upholds[1], upholds[0])
+
+    def _believed(self, result: StageResult, judgement: Judgement) -> StageResult | None:
+        """The result with likelier causes in the place of those that nobody believes; None where there are none."""
+        if not judgement.causes or not doubted(judgement, explained_to_noise(result)):
+            return None
+        others = [likelier(d) for d in result.decisions]
+        if not any(others):
+            return None
+        return replace(result, decisions=tuple(o or d for o, d in zip(others, result.decisions, strict=True)))
 
     def _needed(
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float

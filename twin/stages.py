@@ -14,7 +14,8 @@ from twin.case import Case
 from twin.choose.decide import Decision, decide
 from twin.choose.lean import leaning
 from twin.choose.rules import DecisionRules
-from twin.choose.search import Searcher, SearchRules
+from twin.choose.search import Searcher
+from twin.choose.search_rules import SearchRules
 from twin.choose.unbent import unbent
 from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit

@@ -9,9 +9,9 @@ from control.design import DesignModel
 from control.identify_stops import travel_between_stops
 from logs.recording import Recording
 from twin.case import Case, make_case
-from twin.fit.channel import Channel, chain_channel, position_channel, pressure_channel
-from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import ACCUSED_SPREAD, make_space
+from twin.fit.channel import chain_channel, position_channel, pressure_channel
+from twin.fit.fitting import Fit
+from twin.fit.retuning import retuned
 from twin.noise.model import estimate_noise
 from twin.pieces import cut_at_holes
 from twin.sensing import sense
@@ -21,12 +21,7 @@ from twin.thin import look_at
 
 def retuned_fit(case: Case) -> Fit:
     """Only the design's own numbers, fitted to the whole chain."""
-    return _fitted(case, chain_channel(case.trials, case.sigma_y))
-
-
-def _fitted(case: Case, channel: Channel) -> Fit:
-    space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
-    return fit(channel, space, starts_of(space, (), channel.recordings), rounds=20)
+    return retuned(chain_channel(case.trials, case.sigma_y), case.base, case.scales)
 
 
 def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignModel:
@@ -44,7 +39,6 @@ def tuned_to(recordings: Sequence[Recording], design: DesignModel) -> DesignMode
     look, _ = look_at(make_case(pieces, design, (), sensing.bad_rows, noise, sensing.coarseness))
     if look.sigma_p is None:
         return retuned_fit(look).plant.design
-    first = _fitted(look, pressure_channel(look.trials, look.sigma_p))
-    known = replace(look, base=first.plant)
+    first = retuned(pressure_channel(look.trials, look.sigma_p), look.base, look.scales)
     channel = position_channel(driven_about(first.plant, look), look.sigma_y)
-    return _fitted(known, channel).plant.design
+    return retuned(channel, first.plant, look.scales).plant.design

@@ -61,12 +61,12 @@ def upheld(
         return _seen(parts, judgement, floor, sensing, shown)
     # what the pressure shows need not reach the stem, unless that is clearly off
     told = before <= CLEAR * floor and {c.name for c in judgement.causes} <= set(shown)
-    vain = (after > NO_BETTER * before and not told) or (swings and not exact) or _doubted(judgement, exact)
+    vain = (after > NO_BETTER * before and not told) or (swings and not exact) or doubted(judgement, exact)
     trace = exact and _follows_commands(judgement.causes) and after**2 - floor**2 < TRACE * (before**2 - floor**2)
     # how much an unmeasured pressure wandered by itself nobody knows, but no law of the commands predicts that
     if before <= (HARDLY if apart or trace else SLIGHT) * floor or (vain and before < SLIGHT * floor):
         left = _named_only(judgement, shown)
-        return (parts, left) if left.causes and not _doubted(left, exact) else nothing(parts, judgement, disturbed)
+        return (parts, left) if left.causes and not doubted(left, exact) else nothing(parts, judgement, disturbed)
     if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
         return _unexplained(parts, judgement)
     return parts, judgement
@@ -106,7 +106,7 @@ def _unexplained(parts: GapParts, judgement: Judgement) -> tuple[GapParts, Judge
     return replace(parts, after=after), Judgement("unexplained", (), judgement.ranking, ())
 
 
-def _doubted(judgement: Judgement, exact: bool) -> bool:
+def doubted(judgement: Judgement, exact: bool) -> bool:
     """Whether none of the named causes is, with what cannot be told from it, nearly as likely as not.
 
     `exact`: all is explained to its noise.

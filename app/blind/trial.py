@@ -115,7 +115,7 @@ def _diagnosed(order: Order, record: Recording) -> Outcome:
     """The diagnosis, on disk before anything is unsealed."""
     from app.blind.designs import margin
     from control.design import save_design
-    from twin.choose.search import SearchRules
+    from twin.choose.search_rules import SearchRules
     from twin.diagnose import Settings, diagnose
     from twin.diagnosis import write_diagnosis
     from twin.insert import inserted_from

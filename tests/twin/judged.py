@@ -8,7 +8,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.case import make_case
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Settings
 from twin.insert import inserted_from

@@ -7,7 +7,8 @@ import numpy as np
 from control.design import DesignModel
 from tests.twin.test_pairs import cause, channel_of
 from tests.twin.trials import DESIGN
-from twin.choose.search import Searcher, SearchRules
+from twin.choose.search import Searcher
+from twin.choose.search_rules import SearchRules
 from twin.effect import Scales
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space

@@ -15,7 +15,7 @@ from tests.twin.judged import a_record
 from twin.catalog import effect
 from twin.chain import chain_response
 from twin.choose.candidates import effect_causes
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.effect import Coefficients
 from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_channel

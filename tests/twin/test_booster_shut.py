@@ -10,7 +10,7 @@ from tests.twin.test_booster import D, plant, pressure
 from twin.catalog import effect
 from twin.choose import search
 from twin.choose.candidates import effect_causes
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.effect import Scales
 from twin.fit.channel import pressure_channel

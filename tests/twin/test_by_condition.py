@@ -15,7 +15,7 @@ from twin.by_condition import gap_by_condition
 from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnosis import Gap
 from twin.plant import Inserted, Plant
 from twin.stages import StageResult, judge

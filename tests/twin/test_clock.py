@@ -15,7 +15,7 @@ from tests.twin.judged import a_record
 from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.clock import clock_of
 from twin.plant import Inserted, Plant

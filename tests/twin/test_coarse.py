@@ -17,7 +17,7 @@ from twin.case import Margin, make_case, widened
 from twin.catalog import effect
 from twin.choose.rules import DecisionRules
 from twin.choose.score import student_log_likelihood
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.fit.trial import Trial
 from twin.noise.coarse import Coarse, coarse, flicker

@@ -15,7 +15,7 @@ from tests.twin.judged import a_record, judged
 from twin.case import make_case
 from twin.catalog import effect, effects
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.detectable import Detector, _nuisance, detection_limits, smallest_shown, unseen_in_windows
 from twin.diagnose import Settings, diagnose
 from twin.diagnosis import EffectTest

@@ -13,7 +13,7 @@ from logs.recording import Recording
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin import diagnose as module
 from twin.catalog import effect
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.fit.space import Cause

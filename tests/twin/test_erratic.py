@@ -10,7 +10,7 @@ from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.case import Case, make_case
 from twin.catalog import effect
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit

@@ -9,7 +9,7 @@ from tests.twin.straying import straying
 from twin.case import Case, make_case
 from twin.catalog import effect
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space

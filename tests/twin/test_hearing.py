@@ -24,7 +24,7 @@ from twin.fit.channel import chain_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.gap import GapParts
-from twin.hearing import Hearing
+from twin.hearing import Hearing, weightiest_first
 from twin.plant import Inserted, Plant
 from twin.sensing import Sensing
 from twin.stages import StageResult
@@ -159,3 +159,12 @@ def test_a_further_cause_is_named_where_the_rest_would_not_pass_for_healthy(
     result = StageResult(case, (decision,), case.trials)
     told = hearing.held_out(result, hearing.judgement(result), lambda *_: None, case.sigma_y)[1]
     assert sorted(c.name for c in told.causes) == ["creep", *([further] if named else [])]
+
+
+def test_of_causes_that_are_as_likely_the_one_without_which_most_is_left_comes_first() -> None:
+    chances = {"parameter:ep_tau": 0.97, "creep": 0.97, "stiction": 0.6, "sensor_dropouts": 0.97}
+    named = tuple(Named(name, "sensor", p, None, {}) for name, p in chances.items())
+    left = {"parameter:ep_tau": 1.2, "creep": 4.0, "stiction": 9.0}  # [percent of travel], with 10 % before
+    parts = GapParts(*(np.full(8, level) for level in (0.05, 0.05, 0.002)), left, {})
+    judgement = weightiest_first(Judgement("effects", named, (), ()), parts, 0.5)
+    assert [c.name for c in judgement.causes] == ["sensor_dropouts", "creep", "parameter:ep_tau", "stiction"]

@@ -14,7 +14,7 @@ from twin.case import make_case
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.plant import Inserted, Plant, reading_response
 from twin.refresh import fresh_rows, freshness, new_only, refreshed_together

@@ -9,7 +9,7 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.catalog import effect
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.numbers import retuned
 from twin.moved import moved_numbers

@@ -2,23 +2,31 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from tests.twin.judged import a_record
 from tests.twin.test_outside import a_fit, answered, with_form
+from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
 from twin.choose import trim
 from twin.choose.decide import Decision
 from twin.choose.needless import without_needless
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
+from twin.choose.search import Searcher
 from twin.choose.trim import spoken
 from twin.choose.weigh import Weights
+from twin.effect import Scales
+from twin.fit.channel import position_channel
+from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+from twin.plant import Inserted, Plant
 
 CALIBRATION = effect("ep_calibration")
 RULES = DecisionRules()
@@ -89,3 +97,32 @@ def test_a_rival_that_does_hardly_better_gives_way_to_the_same_cause(
     findings: Any = SimpleNamespace(none=none, fits=(plain, rival), score=lambda f: nats if f is rival else 0.0)
     decision = Decision(findings, rival, True, True, 0.0)
     assert inside(decision, RULES).accepted is (plain if known else rival)
+
+
+def test_a_rival_that_was_needed_only_as_long_as_the_known_form_was_stuck_goes_in_the_end() -> None:
+    """The last look from the neighbours may be the first from which the known form comes to its best."""
+    gauge = effect("lvdt_calibration")
+    trial, _ = trial_of(Plant(DESIGN, (Inserted(gauge.name, gauge.form("zero"), (0.05,)),)), staircase())
+    channel = position_channel([trial], SIGMA)
+    noise = np.random.default_rng(1).normal(size=channel.use.size)
+    zero, rival = (
+        replace(a_fit((Cause(gauge.name, gauge, gauge.form(name)),), 0.99), residuals=noise)
+        for name in ("zero", "picks_up")
+    )
+
+    class OneRival(Searcher):
+        def _singles(self, retuned: Fit) -> list[Fit]:
+            return [rival]
+
+        def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
+            return True
+
+        def _drifting(self, level: Sequence[Fit]) -> list[Fit]:
+            return []
+
+        def _neighbours(self, found: Sequence[Fit]) -> list[Fit]:
+            return [zero]
+
+    found = OneRival(channel, Plant(DESIGN), Scales()).run()
+    forms = [f.space.causes[0].form for f in found.fits if f.names == (gauge.name,)]
+    assert [form.name for form in forms if form] == ["zero"]

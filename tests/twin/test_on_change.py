@@ -14,7 +14,7 @@ from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record
 from twin.catalog import effect
 from twin.choose.candidates import effect_causes
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.events.on_change import on_change
 from twin.fit.channel import position_channel

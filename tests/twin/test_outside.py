@@ -13,7 +13,7 @@ from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
 from twin.case import make_case
 from twin.catalog import effect, effects
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.effect import Scales
 from twin.fit.channel import position_channel, predict_reading

@@ -12,7 +12,7 @@ from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.case import make_case
 from twin.choose.rules import DecisionRules
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.fit.channel import position_channel
 from twin.plant import Plant
 from twin.stages import drive_by_measured, judge, pressure_doubt

@@ -56,3 +56,24 @@ def test_nothing_is_promised_where_nothing_is_missing() -> None:
     screen = make_screen(channel, base, fit(channel, empty, [np.zeros(0)]))
     one = screen.prospect((cause("lvdt_drift", "linear"),), [])
     assert 0.0 <= one.gain < 20.0  # of some four thousand squares
+
+
+def test_a_form_whose_best_start_is_known_from_beside_another_is_looked_at_there_only() -> None:
+    spot = Inserted("position_dependent_friction", effect("position_dependent_friction").form("spot"), (0.3, 0.3, 0.1))
+    channel = channel_with(spot)
+    base, scales = Plant(DesignModel()), Scales()
+    ends = [
+        fit(channel, space, starts_of(space))
+        for name in ("one_tail", "two_tails")
+        for space in (make_space(base, (cause("creep", name),), channel.numbers, scales),)
+    ]
+    first, second = (make_screen(channel, base, end) for end in ends)
+    zone = cause("position_dependent_friction", "spot")
+    [seen] = prospects(first, [(*ends[0].space.causes, zone)], [])
+    [near] = prospects(second, [(*ends[1].space.causes, zone)], [], [seen])
+    [far] = prospects(second, [(*ends[1].space.causes, zone)], [])
+    np.testing.assert_array_equal(near.own, seen.own)
+    assert len(near.own) == len(zone.form.parameters) if zone.form else False
+    assert near.gain > 0.8 * far.gain
+    assert far.left < far.before
+    assert far.left == far.before - far.gain

@@ -10,7 +10,8 @@ import pytest
 from control.design import DesignModel
 from tests.twin.test_pairs import channel_of
 from tests.twin.trials import DESIGN
-from twin.choose.search import Searcher, SearchRules
+from twin.choose.search import Searcher
+from twin.choose.search_rules import SearchRules
 from twin.effect import Scales
 from twin.fit.fitting import fit
 from twin.fit.space import Cause, make_space

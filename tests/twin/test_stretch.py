@@ -10,7 +10,7 @@ import pytest
 from logs.recording import FloatArray
 from tests.twin.judged import a_record
 from tests.twin.loops import FRICTIONS, PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.plant import Plant
 from twin.simulate import Start, simulate_recording

@@ -13,7 +13,7 @@ from twin.catalog import effect
 from twin.choose import trim
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
-from twin.choose.trim import _instead, doubtful, dropped, trimmed
+from twin.choose.trim import _instead, doubtful, dropped, spoken, trimmed
 from twin.choose.weigh import Weights
 from twin.fit.space import Cause
 
@@ -110,3 +110,30 @@ def test_an_effect_and_the_number_that_stands_for_it_are_not_taken_in_turn(monke
     findings: Any = SimpleNamespace(none=one("parameter:tau", 50.0, 0.0))
     decision = Decision(findings, force, explained=True, gap=True, rest=0.0)
     assert trimmed(decision, DecisionRules(), Weights()).names == pair.names
+
+
+@pytest.mark.parametrize(
+    ("channel", "accused", "before", "heard"),
+    [
+        ("pressure", "parameter:ep_tau", 3.9, False),
+        ("pressure", "parameter:ep_tau", 4.1, True),
+        ("pressure", "dead_time", 3.9, True),  # an effect is there or not
+        ("position", "parameter:tau", 3.9, True),
+    ],
+)
+def test_a_converter_s_number_that_moves_no_stem_is_left_out_beside_a_clear_gap(
+    monkeypatch: pytest.MonkeyPatch, channel: str, accused: str, before: float, heard: bool
+) -> None:
+    monkeypatch.setattr(trim, "_guess", lambda *_: False)
+    monkeypatch.setattr(trim, "moved_square", lambda *_: 0.0)
+
+    def decided(where: str, name: str, none: float) -> Decision:
+        findings: Any = SimpleNamespace(channel=SimpleNamespace(name=where, sigma=1.0), none=one(name, none, 0.0))
+        return Decision(findings, one(name, 1.0, 0.03), explained=True, gap=True, rest=0.0)
+
+    clear = decided("position", "creep", 100.0)
+    first, second = spoken((decided(channel, accused, before), clear), Weights(), False)
+    assert first.explained is heard
+    assert second is clear
+    [alone] = spoken((decided(channel, accused, before),), Weights(), False)
+    assert alone.explained

@@ -18,7 +18,7 @@ from twin.choose.decide import Decision, decide
 from twin.choose.findings import Findings
 from twin.choose.rules import DecisionRules
 from twin.choose.score import make_yardstick
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.choose.trim import SLIGHT, spoken
 from twin.choose.weigh import Weights
 from twin.diagnose import diagnose

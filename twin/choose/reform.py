@@ -8,9 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from twin.choose.screen import Prospect
 from twin.effect import Form
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+
+#: A hypothesis, and what one more cause makes of it.
+Beyond = tuple[Fit, list[tuple[Cause, ...]]]
 
 
 def exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
@@ -60,9 +64,9 @@ def _curved(form: Form) -> bool:
     return form.free or form.apart > 0
 
 
-def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
-    """For the best `most` of the pairs of effects: one effect alone in one of its forms, and it with the other effect
-    in every form, as far as `pairs` does not have them. `tried`: all causes alone in all forms.
+def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> list[list[Beyond]]:
+    """For each of the best `most` of the pairs of effects: one effect alone in each of its forms, with the other effect
+    in every form beside it, as far as `pairs` does not have them. `tried`: all causes alone in all forms.
 
     The effect with fewer forms goes first: there is one look for each.
     """
@@ -72,11 +76,21 @@ def in_other_forms(pairs: Sequence[Fit], tried: Sequence[Fit], most: int) -> lis
     for pair in sorted(effects, key=lambda f: f.mse)[:most]:
         alone = [[f for f in tried if f.names == (name,)] for name in pair.names]
         first, second = sorted(alone, key=len)
-        for one in first:
-            todo = [(*one.space.causes, *other.space.causes) for other in second]
-            todo = [causes for causes in todo if exactly(causes) not in known]
-            found += [(one, todo)] if todo else []
-    return found
+        both = [(one, [(*one.space.causes, *other.space.causes) for other in second]) for one in first]
+        new = [(one, [causes for causes in some if exactly(causes) not in known]) for one, some in both]
+        found.append([(one, some) for one, some in new if some])
+    return [some for some in found if some]
+
+
+def least_left(looked: Sequence[Prospect], most: int) -> list[Prospect]:
+    """Of each pair of causes the `most` forms that promise to leave least.
+
+    A full fit of each cost half of a hard search (docs/decisions/large-records.md).
+    """
+    kept: dict[frozenset[str], list[Prospect]] = {}
+    for one in sorted(looked, key=lambda p: p.left):
+        kept.setdefault(frozenset(c.name for c in one.causes), []).append(one)
+    return [one for some in kept.values() for one in some[:most]]
 
 
 def better_of_each(fits: Sequence[Fit]) -> list[Fit]:

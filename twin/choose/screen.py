@@ -30,12 +30,24 @@ _LARGEST = 5.0
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prospect:
-    """A hypothesis with the start that promises most, and by how much it would lower the sum of squares."""
+    """A hypothesis with the start that promises most, and by how much it would lower the sum of squares `before`."""
 
     causes: tuple[Cause, ...]
     space: Space
     start: FloatArray
     gain: float
+    before: float = 0.0
+
+    @property
+    def own(self) -> FloatArray:
+        """Where the unknowns of the last cause start."""
+        last = self.causes[-1].form
+        return self.start[self.start.size - (len(last.parameters) if last is not None else 0) :]
+
+    @property
+    def left(self) -> float:
+        """What it promises to leave of the sum of squares."""
+        return self.before - self.gain
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -49,11 +61,14 @@ class Screen:
     r: FloatArray
     basis: FloatArray
 
-    def prospect(self, causes: tuple[Cause, ...], known: Sequence[Fit]) -> Prospect:
-        """The best start of the last of `causes`, which the smaller hypothesis does not have."""
+    def prospect(self, causes: tuple[Cause, ...], known: Sequence[Fit], near: Prospect | None = None) -> Prospect:
+        """The best start of the last of `causes`, which the smaller hypothesis does not have.
+
+        `near`: where only its start is looked at (see `prospects`).
+        """
         space = make_space(self.base, causes, self.space.numbers, self.space.scales)
-        best = Prospect(causes, space, self.z, -1.0)
-        for option in _options(space, known):
+        best = Prospect(causes, space, self.z, -1.0, float(self.r @ self.r))
+        for option in _options(space, known) if near is None else [near.own]:
             best = self._better(best, option)
         for option in _zoomed(causes[-1], best.start[self.z.size :]):
             best = self._better(best, option)
@@ -114,9 +129,23 @@ def make_screen(channel: Channel, base: Plant, parent: Fit) -> Screen:
     return Screen(channel, base, space, z, r - basis @ (basis.T @ r), basis)
 
 
-def prospects(screen: Screen, todo: Iterable[tuple[Cause, ...]], known: Sequence[Fit]) -> list[Prospect]:
-    """All hypotheses of `todo`, the most promising first."""
-    return sorted((screen.prospect(causes, known) for causes in todo), key=lambda p: -p.gain)
+def prospects(
+    screen: Screen, todo: Iterable[tuple[Cause, ...]], known: Sequence[Fit], seen: Sequence[Prospect] = ()
+) -> list[Prospect]:
+    """All hypotheses of `todo`, the most promising first.
+
+    `seen`: what was found beyond another smaller hypothesis, all starts looked at. Of a last cause that is among them
+    only its best start there is looked at.
+    """
+    near = {_form_of(p.causes): p for p in reversed(seen) if p.gain > 0.0}  # the first one of each stays
+    found = [screen.prospect(causes, known, near.get(_form_of(causes))) for causes in todo]
+    return sorted(found, key=lambda p: -p.gain)
+
+
+def _form_of(causes: tuple[Cause, ...]) -> tuple[str, str]:
+    """The last cause by its name and its form's."""
+    last = causes[-1]
+    return last.name, last.form.name if last.form is not None else ""
 
 
 def _options(space: Space, known: Sequence[Fit]) -> list[FloatArray]:

@@ -18,48 +18,25 @@ from twin.choose.candidates import effect_causes, number_causes
 from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
 from twin.choose.findings import Findings
 from twin.choose.likeliest import by_score, likeliest
+from twin.choose.needless import without_needless
 from twin.choose.nested import beyond_retuning, nested
 from twin.choose.pairs import Pair, promising_pairs
 from twin.choose.polish import polished
-from twin.choose.reform import bent_by, better_of_each, exactly, in_laws, in_other_forms
+from twin.choose.reform import Beyond, bent_by, better_of_each, exactly, in_laws, in_other_forms, least_left
 from twin.choose.score import yardstick_for
-from twin.choose.screen import make_screen, prospects
+from twin.choose.screen import Prospect, make_screen, prospects
+from twin.choose.search_rules import SearchRules
 from twin.choose.slips import several_slips
-from twin.choose.trim import SLIGHT
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
-from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
+from twin.fit.retuning import retuned
+from twin.fit.space import Cause, make_space
 from twin.plant import Plant
 
 Progress = Callable[[str, float], None]
 _T = TypeVar("_T")
 _R = TypeVar("_R")
-
-
-@dataclass(frozen=True, slots=True)
-class SearchRules:
-    """How far the search goes. `beam`: hypotheses that are extended by one more cause; `most`: causes at the most."""
-
-    beam: int = 4
-    most: int = 3
-    rounds: int = 6
-    polish: int = 8
-    threads: int = 2
-    paired: int = 6  # pairs that get a full fit because their moves add up well, from each point that is looked from
-    screened: int = 5  # further causes per hypothesis of the beam that get a full fit,
-    forms: int = 3  # each in so many forms at the most
-    reformed: int = 8  # pairs whose members are tried in their other forms,
-    reform_share: float = 0.002  # where the likeliest pair leaves more than this share of what the design leaves,
-    bent: float = 4.0  # or moves its design numbers by more than this (squares of their priors' deviations)
-    enough: float = 1.25  # a mean squared residual (noise = 1) that leaves nothing to explain
-    enough_share: float = 0.0003  # likewise, as a share of what the design leaves
-    stuck: float = 0.5  # a share of what a hypothesis leaves, below which it is fitted again from one with a cause more
-    restless: float = 0.5  # the resting reading's share of the noise, below which repeats may have drifted apart
-    hopeless: float = 0.6  # a share of what re-tuning leaves, above which after the best pair a third cause is no use
-    # a mean squared residual of a pressure that passes for healthy: no two causes are behind that
-    slight: float = SLIGHT
-    scant: float = 0.02  # a share of what the design leaves, below which a third cause would not be accepted
 
 
 @dataclass(slots=True)
@@ -79,22 +56,21 @@ class Searcher:
     def run(self) -> Findings:
         """The whole search."""
         none = fit(self.channel, make_space(self.base, (), (), self.scales), [np.zeros(0)])
-        space = make_space(self.base, (), self.channel.numbers, self.scales, ACCUSED_SPREAD)
-        retuned = fit(self.channel, space, starts_of(space, (), self.channel.recordings), rounds=20)
-        self.origins[:] = [none, retuned]
-        level = self._singles(retuned)
+        tuned = retuned(self.channel, self.base, self.scales)
+        self.origins[:] = [none, tuned]
+        level = self._singles(tuned)
         slips = number_causes(self.channel)
-        found = [*level, *several_slips(slips, none, retuned, self._fit_from, self.rules.scant)]
+        found = [*level, *several_slips(slips, none, tuned, self._fit_from, self.rules.scant)]
         for size in range(2, self.rules.most + 1):
             if self._nothing_left(level, none):
                 found += self._drifting(level) if size == 2 else []
                 break
-            if size > 2 and self._idle(level, none, retuned):
+            if size > 2 and self._idle(level, none, tuned):
                 break
             level = self._extended(level, size)
             found += level
-        found = better_of_each([*found, *self._neighbours(found)])
-        return Findings(self.channel, none, retuned, tuple(found), yardstick_for([none, *found], self.channel.use))
+        found = without_needless(better_of_each([*found, *self._neighbours(found)]), none)
+        return Findings(self.channel, none, tuned, tuple(found), yardstick_for([none, *found], self.channel.use))
 
     def _nothing_left(self, level: Sequence[Fit], none: Fit) -> bool:
         """Whether the likeliest leaves nothing to explain. One that bends all numbers may, and is no answer.
@@ -136,7 +112,7 @@ class Searcher:
             found += self._reformed(best_forms(found, self.channel.use, self.origins[0]))
         return self._polished(best_forms(found, self.channel.use, self.origins[0]))
 
-    def _further(self, level: Sequence[Fit], singles: Sequence[Cause]) -> list[tuple[Fit, list[tuple[Cause, ...]]]]:
+    def _further(self, level: Sequence[Fit], singles: Sequence[Cause]) -> list[Beyond]:
         """The hypotheses of the beam, each with what one more cause makes of it; no causes twice."""
         found = []
         seen: set[tuple[str, ...]] = set()
@@ -151,7 +127,8 @@ class Searcher:
         """Fits of those of `todo`, `parent` with one more cause: every number, and the effects that promise most."""
         numbers = [causes for causes in todo if causes[-1].form is None]
         fits = [self._fit(causes, [parent, *self.tried]) for causes in self._wanted(numbers)]
-        return fits + self._promising(parent, [causes for causes in todo if causes[-1].form is not None])
+        effects = [causes for causes in todo if causes[-1].form is not None]
+        return fits + [self._fit_prospect(p) for p in self._wanted(self._looked([(parent, effects)]))]
 
     def _reformed(self, pairs: Sequence[Fit]) -> list[Fit]:
         """The best pairs with the first effect in its other forms, where what they leave or bend asks for it."""
@@ -160,7 +137,8 @@ class Searcher:
         if best is None or (best.mse - 1.0 <= least and bent_by(best) < self.rules.bent):
             return []
         todo = in_other_forms(pairs, self.tried, self.rules.reformed)
-        return [f for some in self._each(lambda p: self._promising(*p), todo, "other forms") for f in some]
+        looked = [p for some in self._each(self._looked, todo, "other forms") for p in some]
+        return self._each(self._fit_prospect, least_left(looked, self.rules.other_forms), "other forms")
 
     def _drifting(self, level: Sequence[Fit]) -> list[Fit]:
         """What drifts beside the likeliest cause, where it may hide in the noise: more is not to be found there."""
@@ -195,11 +173,19 @@ class Searcher:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
         return fit(self.channel, space, starts_of(space, [parent]), rounds=self.rules.rounds)
 
-    def _promising(self, parent: Fit, todo: Sequence[tuple[Cause, ...]]) -> list[Fit]:
-        """Full fits of those of `todo` that a look from where `parent` ended finds most promising."""
-        screen = make_screen(self.channel, self.base, parent)
-        best = some_of_each(prospects(screen, self._wanted(todo), self.tried), self.rules.screened, self.rules.forms)
-        return [fit(self.channel, p.space, [p.start], rounds=self.rules.rounds) for p in self._wanted(best)]
+    def _looked(self, beyond: Sequence[Beyond]) -> list[Prospect]:
+        """Beyond each of a few hypotheses, those that a look from where it ended finds most promising."""
+        seen: list[Prospect] = []
+        best: list[Prospect] = []
+        for parent, todo in beyond:
+            screen = make_screen(self.channel, self.base, parent)
+            ranked = prospects(screen, self._wanted(todo), self.tried, seen)
+            seen += ranked
+            best += some_of_each(ranked, self.rules.screened, self.rules.forms)
+        return best
+
+    def _fit_prospect(self, one: Prospect | Pair) -> Fit:
+        return fit(self.channel, one.space, [one.start], rounds=self.rules.rounds)
 
     def _paired(self, causes: Sequence[Cause]) -> list[Fit]:
         """Full fits of the pairs of effects whose moves of the residual add up best."""
@@ -209,7 +195,7 @@ class Searcher:
             return promising_pairs(screen, self._wanted(causes), self.tried, together)[: self.rules.paired]
 
         todo = [pair for some in self._each(best, self.origins, "pairs") for pair in some]
-        return self._each(lambda p: fit(self.channel, p.space, [p.start], rounds=self.rules.rounds), todo, "pairs")
+        return self._each(self._fit_prospect, todo, "pairs")
 
     def _polished(self, fits: Sequence[Fit]) -> list[Fit]:
         with ThreadPoolExecutor(self.rules.threads) as pool:

@@ -9,7 +9,7 @@ from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
-from twin.choose.search import SearchRules
+from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 
 
