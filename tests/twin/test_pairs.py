@@ -15,9 +15,9 @@ from twin.catalog import effect
 from twin.choose.claims import together
 from twin.choose.decide import decide
 from twin.choose.pairs import _best_of_each, _gains, promising_pairs
-from twin.choose.reform import better_of_each, in_laws, in_other_forms, least_left
+from twin.choose.reform import better_of_each, in_laws, in_other_forms
 from twin.choose.rules import DecisionRules
-from twin.choose.screen import Prospect, make_screen
+from twin.choose.screen import make_screen
 from twin.choose.search import Searcher
 from twin.choose.search_rules import SearchRules
 from twin.effect import Scales
@@ -73,21 +73,6 @@ def test_pairs_are_tried_in_the_forms_that_did_not_do_best_alone() -> None:
         {f.name for f in effect("reduced_travel").forms[1:]},
     ]
     assert in_other_forms([both, number], tried, 0) == []
-
-
-def test_of_each_pair_of_causes_those_forms_are_fitted_that_promise_to_leave_least() -> None:
-    """However much they gain: one may begin from a worse form of the other effect."""
-    play, stop = cause("linkage_lost_motion", "play"), cause("reduced_travel", "lower_stop")
-    one_sided, tail = cause("linkage_lost_motion", "one_sided"), cause("creep", "one_tail")
-    space, z = make_space(Plant(DESIGN), (), (), Scales()), np.zeros(0)
-    looked = [
-        Prospect((play, stop), space, z, gain=80.0, before=100.0),
-        Prospect((one_sided, stop), space, z, gain=20.0, before=30.0),
-        Prospect((one_sided, stop), space, z, gain=5.0, before=30.0),
-        Prospect((play, tail), space, z, gain=1.0, before=100.0),
-    ]
-    assert least_left(looked, 2) == [looked[1], looked[0], looked[3]]
-    assert least_left(looked, 1) == [looked[1], looked[3]]
 
 
 @pytest.mark.thorough
