@@ -168,3 +168,14 @@ def test_of_causes_that_are_as_likely_the_one_without_which_most_is_left_comes_f
     parts = GapParts(*(np.full(8, level) for level in (0.05, 0.05, 0.002)), left, {})
     judgement = weightiest_first(Judgement("effects", named, (), ()), parts, 0.5)
     assert [c.name for c in judgement.causes] == ["sensor_dropouts", "creep", "parameter:ep_tau", "stiction"]
+
+
+def test_what_unseen_data_leave_standing_comes_in_that_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    case = make_case([a_record(Plant(DESIGN))], DESIGN)
+    named = tuple(Named(name, "sensor", 0.97, None, {}) for name in ("parameter:ep_tau", "creep"))
+    parts = GapParts(np.ones(8), np.ones(8), np.ones(8), {"parameter:ep_tau": 1.2, "creep": 4.0}, {})
+    heard = (None, Judgement("effects", named, (), ()), parts)
+    monkeypatch.setattr(Hearing, "_heard", lambda *_: heard)
+    hearing: Any = Hearing(case, None, Sensing((), {}, 0.0), 0.0, Weights(), False)  # type: ignore[arg-type]
+    told = hearing.held_out(None, heard[1], None, 1.0)[1]
+    assert [c.name for c in told.causes] == ["creep", "parameter:ep_tau"]
