@@ -39,15 +39,22 @@ def found(clones: Path, work: Path) -> Iterator[Recording]:
 def answered(out: Path, one: Recording) -> dict[str, Any]:
     """What `diagnose` says of a recording, or the `error` with which it ends."""
     place = out / f"{one.group} {one.name}".replace(",", "").replace(" ", "-").replace(":", "")
-    if not (place / "diagnosis.json").exists():
-        try:
-            call("diagnose", str(one.file), *one.words, "--out", str(place))
-        except subprocess.TimeoutExpired:
-            return {"error": f"no answer in {LIMIT_S:g} s"}
-        except subprocess.CalledProcessError as error:
-            return {"error": error.stderr.strip().splitlines()[-1]}
-    said: dict[str, Any] = json.loads((place / "diagnosis.json").read_text(encoding="utf-8"))
-    return said
+    if (said := _whole(place)) is not None:
+        return said
+    try:
+        call("diagnose", str(one.file), *one.words, "--out", str(place))
+    except subprocess.TimeoutExpired:
+        return {"error": f"no answer in {LIMIT_S:g} s"}
+    except subprocess.CalledProcessError as error:
+        return {"error": error.stderr.strip().splitlines()[-1]}
+    return _whole(place) or {"error": "interrupted"}
+
+
+def _whole(place: Path) -> dict[str, Any] | None:
+    """The answer that is there; one that was interrupted, and says only what was known by then, is none."""
+    path = place / "diagnosis.json"
+    said: dict[str, Any] = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {"complete": False}
+    return said if said["complete"] else None
 
 
 def row(one: Recording, said: Mapping[str, Any]) -> str:

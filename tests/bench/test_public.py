@@ -72,3 +72,21 @@ def test_what_cannot_be_diagnosed_says_why(tmp_path: Path) -> None:
     (tmp_path / "empty.csv").write_text("time_s,command_psi,position_in\n0,1,2\n", encoding="utf-8")
     said = answered(tmp_path, Recording("a, b", "c", "", tmp_path / "empty.csv", ()))
     assert set(said) == {"error"} and "empty.csv" in said["error"]
+
+
+def test_an_answer_that_was_interrupted_is_asked_for_once_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    one = Recording("valve", "an hour", "sticks", Path("x.csv"), ())
+    place = tmp_path / "valve-an-hour"
+    place.mkdir()
+    (place / "diagnosis.json").write_text('{"complete": false, "verdict": "unexplained"}', encoding="utf-8")
+    asked = []
+
+    def call(*words: str) -> None:
+        asked.append(words)
+        if len(asked) == 2:
+            (place / "diagnosis.json").write_text('{"complete": true, "verdict": "no_gap"}', encoding="utf-8")
+
+    monkeypatch.setattr("bench.public.__main__.call", call)
+    assert answered(tmp_path, one) == {"error": "interrupted"}
+    assert answered(tmp_path, one) == answered(tmp_path, one) == {"complete": True, "verdict": "no_gap"}
+    assert len(asked) == 2
