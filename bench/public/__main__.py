@@ -26,6 +26,8 @@ _SETS: Mapping[str, Callable[[Path, Path], Iterator[Recording]]] = {
     "camber-control": machines.cylinders,
     "system_norm_koopman": machines.rig,
 }
+#: [any unit]; a limit that is none, or a point of a curve that is nothing.
+_NIL = 1e-9
 _HEAD = "| recording | known | gap: as given, re-tuned, with the causes, noise [%] | the answer | not told apart from |"
 
 
@@ -71,8 +73,8 @@ def row(one: Recording, said: Mapping[str, Any]) -> str:
 
 
 def _named(cause: Mapping[str, Any]) -> str:
-    """A cause with its first parameter, which says how large it is."""
-    size = next(iter(cause["parameters"].values()), None)
+    """A cause with the first of its parameters that is not nil, which says how large it is."""
+    size = next((p for p in cause["parameters"].values() if abs(p["value"]) > _NIL), None)
     how_large = f" {size['value']:.2g} {size['unit']}" if size else ""
     return f"{cause['name']}{how_large} ({cause['probability']:.2f})"
 

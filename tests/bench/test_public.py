@@ -59,7 +59,8 @@ def test_an_hour_of_a_boiler_becomes_three_columns(tmp_path: Path) -> None:
 def test_what_is_said_becomes_a_row() -> None:
     one = Recording("valve", "an hour", "sticks", Path("x.csv"), ())
     gap = {"before": 1.234, "retuned": 0.5, "after": None, "noise_floor": 0.1}
-    sizes = {"breakaway": {"value": 0.1234, "unit": "psi"}, "speed": {"value": 1.0, "unit": "psi/s"}}
+    nil = {"value": 2e-25, "unit": "s"}  # what it has no size of says nothing
+    sizes = {"slowness": nil, "breakaway": {"value": 0.1234, "unit": "psi"}, "speed": {"value": 1.0, "unit": "psi/s"}}
     cause = {"name": "stiction", "parameters": sizes, "probability": 0.9}
     said = {"gap": gap, "verdict": "effect", "causes": [cause], "confusable": [["stiction", "creep"]]}
     assert row(one, said) == "| valve, an hour | sticks | 1.2, 0.5, -, 0.1 | stiction 0.12 psi (0.90) | creep |"
