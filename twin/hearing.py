@@ -67,9 +67,11 @@ class Hearing:
         result, judgement, parts = self._needed(result, judgement, progress, floor)
         upholds = self._upheld(result, judgement, parts, floor)
         if upholds[1].verdict == "unexplained" and (other := self._believed(result, judgement)) is not None:
-            result, judgement = other, self.judgement(other)
-            parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
-            upholds = self._upheld(result, judgement, parts, floor)
+            likely = self.judgement(other)
+            again = heldout_parts(self.case, other, likely, self.retuned, self.sensing, progress)
+            stands = self._upheld(other, likely, again, floor)
+            if stands[1].verdict != "unexplained":
+                return other, stands[1], stands[0]
         shown = shown_by_pressure(result)
         behind = {c.name for c in judgement.causes} - set(shown)
         if upholds[1].verdict != "unexplained" or not shown or not behind:

@@ -91,6 +91,7 @@ def test_a_number_that_nobody_believes_gives_way_before_the_gap_is_called_unexpl
     result = StageResult(case, (decision,), case.trials)
     first = hearing.judgement(result)
     assert first.causes[0].probability < 0.45
-    told = hearing.held_out(result, first, lambda *_: None, case.sigma_y)[1]
+    kept, told, _ = hearing.held_out(result, first, lambda *_: None, case.sigma_y)
     assert told.verdict == verdict
+    assert (kept.decisions[0].names == PLAIN) is (verdict == "unexplained")  # what was not upheld leaves no trace
     assert [c.name for c in told.causes] == (["distributed_hysteresis"] if verdict == "effect" else [])
