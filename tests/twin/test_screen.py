@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
@@ -58,7 +59,9 @@ def test_nothing_is_promised_where_nothing_is_missing() -> None:
     assert 0.0 <= one.gain < 20.0  # of some four thousand squares
 
 
-def test_a_form_whose_best_start_is_known_from_beside_another_is_looked_at_there_only() -> None:
+def test_a_form_whose_best_start_is_known_from_beside_another_is_looked_at_there_only(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     spot = Inserted("position_dependent_friction", effect("position_dependent_friction").form("spot"), (0.3, 0.3, 0.1))
     channel = channel_with(spot)
     base, scales = Plant(DesignModel()), Scales()
@@ -70,8 +73,13 @@ def test_a_form_whose_best_start_is_known_from_beside_another_is_looked_at_there
     first, second = (make_screen(channel, base, end) for end in ends)
     zone = cause("position_dependent_friction", "spot")
     [seen] = prospects(first, [(*ends[0].space.causes, zone)], [])
+    looks: list[int] = []
+    residuals = Channel.residuals
+    monkeypatch.setattr(Channel, "residuals", lambda *given: looks.append(1) or residuals(*given))
     [near] = prospects(second, [(*ends[1].space.causes, zone)], [], [seen])
+    assert len(looks) == 1
     [far] = prospects(second, [(*ends[1].space.causes, zone)], [])
+    assert len(looks) > 5
     np.testing.assert_array_equal(near.own, seen.own)
     assert len(near.own) == len(zone.form.parameters) if zone.form else False
     assert near.gain > 0.8 * far.gain

@@ -36,7 +36,7 @@ class Prospect:
     space: Space
     start: FloatArray
     gain: float
-    before: float = 0.0
+    before: float
 
     @property
     def own(self) -> FloatArray:
