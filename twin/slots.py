@@ -30,9 +30,7 @@ EP_CLIP = 10  # pressure that is cut off rather than aimed at [pressure]
 EP_TANK = 11  # pressure of a supply that sinks as air is drawn from it [pressure]
 EP_DRAW = 12  # by how much it sinks for each unit that the pressure rises [-]
 EP_REFILL_S = 13  # time constant with which it comes back [s]
-EP_FULL_UP = (
-    14  # slope through a booster that is fully open, stem at EP_MIDDLE [pressure/s]; FOREVER: there is no booster
-)
+EP_FULL_UP = 14  # slope through a booster that is fully open, stem at EP_MIDDLE [pressure/s]; FOREVER: no booster
 EP_FULL_DOWN = 15  # the same falling, at EP_REFERENCE
 EP_REFERENCE = 16  # [pressure]
 EP_OPEN = 17  # error at which the booster is fully open [pressure]
@@ -189,7 +187,10 @@ S_KINK = S_MASS_DAMPING + 1  # excess where two straight halves of the reading m
 S_KINK_AT = S_KINK + 1  # and where that is [fraction of travel]
 S_WAVE = S_KINK_AT + 1  # one wave of a sine between the ends of travel [fraction of travel]
 S_SINKS_S = S_WAVE + 1  # in which a loose core goes to the far end of its play [s], or, < 0, the near; 0: it stays
-S_COUNT = S_SINKS_S + 1
+S_SLIPS = S_SINKS_S + 1  # share of the way of a quick stem that a slipping coupling loses when closing [-]
+S_SLIPS_OPEN = S_SLIPS + 1  # and opening
+S_SLIPS_ABOVE = S_SLIPS_OPEN + 1  # and the speed from which it slips [position/s]
+S_COUNT = S_SLIPS_ABOVE + 1
 
 FOREVER = 1e30
 

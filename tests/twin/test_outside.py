@@ -58,6 +58,10 @@ def answered(*records: Recording) -> Outcome:
         (with_form("lvdt_calibration", "picks_up", 0.02, 0.0), "the reading picks up the pressure or the command"),
         (with_form("sensor_lag", "leads", 0.5), "the reading picks up the speed of the stem"),
         (with_form("ep_rate_limit", "stroke", 0.2), "the stroke of the stem moves the pressure"),
+        (
+            with_form("linkage_lost_motion", "slips", 0.03, 0.015, 0.4),
+            "a coupling between stem and gauge slips in quick moves",
+        ),
     ],
 )
 def test_a_rival_that_explains_best_leaves_it_unexplained(plant: Plant, words: str) -> None:
@@ -103,6 +107,17 @@ def test_a_reading_picks_up_the_speed_of_the_stem() -> None:
     stands = (time_s < 4.9) | (time_s > 25.2)
     np.testing.assert_allclose(reading[moves], stem[grid.offsets][moves] + 0.4 * 0.02, atol=1e-12)
     np.testing.assert_allclose(reading[stands], stem[grid.offsets][stands], atol=1e-12)
+
+
+def test_a_coupling_slips_where_the_stem_is_quick() -> None:
+    """A quick stroke up loses a tenth, a slow one down nothing, a quick one down a twentieth of its way."""
+    time_s = np.append(0.1 * np.arange(400), 39.9 + 0.5 * np.arange(1, 100))
+    grid = make_grid(time_s, 0.03)
+    stem = np.interp(grid.fine_time_s, [0.0, 5.0, 8.0, 10.0, 30.0, 39.9, 41.9], [0.1, 0.1, 0.4, 0.4, 0.2, 0.2, 0.0])
+    c = with_form("linkage_lost_motion", "slips", 0.1, 0.05, 0.5).coefficients(90.0)
+    reading = reading_response(c, grid, stem, np.zeros(stem.size))
+    gone = np.interp(time_s, [5.0, 8.0, 39.9, 41.9], [0.0, 0.03, 0.03, 0.02])
+    np.testing.assert_allclose(reading, stem[grid.offsets] - gone, atol=1e-12)
 
 
 def test_a_stroke_takes_pressure_that_the_converter_gives_back() -> None:
@@ -171,6 +186,7 @@ def test_no_rival_is_in_an_updated_model() -> None:
         picks_up,
         ("sensor_lag", "leads"),
         ("ep_rate_limit", "stroke"),
+        ("linkage_lost_motion", "slips"),
         *snaps,
         ("nonlinear_spring", "breaks"),
     }

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_PLAY, S_SINKS_S, S_ZERO
+from twin.slots import S_PLAY, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_ZERO
 
 _PLAY = Parameter(
     name="play",
@@ -38,6 +38,29 @@ _SINKS = Parameter(
 )
 
 
+_LOST = Parameter(
+    name="lost",
+    kind="fraction",
+    lower=0.0,
+    upper=0.5,
+    starts=(0.02, 0.1),
+    scale=0.1,
+    doc="share of the way of a quick stem that the coupling loses when closing",
+)
+_LOST_OPEN = replace(_LOST, name="lost_open", doc="the same when opening")
+_ABOVE = Parameter(
+    name="above",
+    kind="fraction",
+    lower=0.02,
+    upper=0.95,
+    starts=(0.1, 0.25, 0.4, 0.55, 0.7),
+    scale=0.4,
+    doc="from which speed on, as a share of the rate limit",
+    neutral=0.4,
+    size=False,
+)
+
+
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_PLAY] = values[0]
 
@@ -57,12 +80,18 @@ def _sinks_back(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_SINKS_S] = -values[1]
 
 
+def _slips(c: Coefficients, values: Sequence[float]) -> None:
+    c.sensor[[S_SLIPS, S_SLIPS_OPEN]] = values[:2]
+    c.sensor[S_SLIPS_ABOVE] = values[2] * c.design.rate_limit
+
+
 EFFECT = Effect(
     name="linkage_lost_motion",
     stage="sensor",
     claim="There is play between the stem and the LVDT core.",
     equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side; sinks: "
-    "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks",
+    "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks; a coupling that slips has "
+    "no play, only told from what it resembles: dy = (1 - lost) dx above a speed",
     source="Nordin, Gutman, Automatica 38 (2002) 1633; Tao, Kokotovic, Adaptive Control of Systems with Actuator and "
     "Sensor Nonlinearities (Wiley 1996)",
     forms=(
@@ -70,6 +99,12 @@ EFFECT = Effect(
         Form("one_sided", (_ONE_SIDED,), _one_sided),
         Form("sinks", (_PLAY, _SINKS), _sinks),
         Form("sinks_back", (_PLAY, _SINKS), _sinks_back),
+        Form(
+            "slips",
+            (_LOST, _LOST_OPEN, _ABOVE),
+            _slips,
+            outside="a coupling between stem and gauge slips in quick moves",
+        ),
     ),
     twins=("friction_in_motion",),
     absorbs=("deadband",),

@@ -1,7 +1,7 @@
 """The position sensor: stem on the fine grid in, reading at the sample instants out.
 
-Order of the parts: what it picks up of the speed, linkage play, curvature, gain and zero with drift, low-pass, mean,
-refresh (hold), resolution.
+Order of the parts: what it picks up of the speed, a coupling that slips, linkage play, curvature, gain and zero with
+drift, low-pass, mean, refresh (hold), resolution.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.mean import running_mean
 from twin.kernels.second_order import swinging
 from twin.kernels.sinking import core_of, first_core
+from twin.kernels.slipping import slipped, slips
 from twin.slots import (
     KNOTS,
     S_AT_OPEN,
@@ -79,6 +80,8 @@ def sensor_kernel(
     """Fills `out` (shape (n,)) with the reading; `taken_s`: when each was taken, where that is not at its row."""
     if c[S_LEADS_S] != 0.0:
         stem = leading(elapsed_s(time_s, offsets), stem, c[S_LEADS_S])
+    if slips(c):
+        stem = stem - slipped(elapsed_s(time_s, offsets), stem, c)
     core = stem
     if c[S_PLAY] > 0.0:
         core = core_of(elapsed_s(time_s, offsets), stem, c, first_core(c, stem[0], c[S_CORE]))

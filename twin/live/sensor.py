@@ -10,6 +10,7 @@ import numpy as np
 from logs.recording import FloatArray
 from twin.kernels.sensor import filters, lags_s, leading, static_reading, swings
 from twin.kernels.sinking import core_of, first_core
+from twin.kernels.slipping import slipped, slips
 from twin.live.lag import Lag
 from twin.live.mean import Mean
 from twin.live.swing import Swing
@@ -26,6 +27,7 @@ class Sensor:
         self._c = c
         self._origin_s = origin_s
         self._core = first_core(c, x0, core)
+        self._slipped = 0.0
         lags, filters_of_two = [Lag(float(one)) for one in lags_s(c)], [Swing(*map(float, one)) for one in swings(c)]
         self._filters: list[Lag | Swing] = [*lags, *filters_of_two]
         self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
@@ -44,6 +46,9 @@ class Sensor:
         t = np.linspace(time_s[0], time_s[1], stem.size) - self._origin_s
         if c[S_LEADS_S] != 0.0:
             stem = leading(t, stem, c[S_LEADS_S])  # the first point is the last of the row before, and counts no more
+        if slips(c):
+            gone = self._slipped + slipped(t, stem, c)
+            stem, self._slipped = stem - gone, float(gone[-1])
         stem = core_of(t, stem, c, self._core)
         self._core = float(stem[-1])
         if filters(c):
