@@ -132,7 +132,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = replace(everything, decisions=result.decisions)
     known.judgement = judgement
     if judgement.verdict != "no_gap":
-        known.notes += tied_note([c.name for c in judgement.causes], case.base)
+        known.notes += tied_note([c.name for c in judgement.causes], case.base, parts.driven)
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
@@ -201,7 +201,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     noise = estimate_noise(recordings) if blurred else noise
     notes += [*blurred, *admit(recordings, plant, noise)]
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
-    noise = noise_of_refreshed(recordings, noise)
+    noise = noise_of_refreshed(recordings, noise, repeats)
     recordings, timing_notes, known.slack = settled_timing(recordings, plant, noise)
     known.recordings, known.notes, known.noise = tuple(recordings), [*notes, *timing_notes], noise
     progress("noise and events", 1.0)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from twin.closure import rms
 from twin.fit.channel import chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import make_space
-from twin.heldout import predict_heldout
+from twin.heldout import errors_on_channel, is_erratic, predict_heldout
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement
@@ -39,7 +39,8 @@ class GapParts:
 
     `without[name]`: the named causes less this one, what is left of its channel fitted anew; a channel that has no
     other is the design as given, without the numbers that had moved beside the cause. `alone[name]`: this candidate as
-    the only cause of its channel.
+    the only cause of its channel. `driven`: errors before and after as RMS in the unit of the reading, given the
+    measured pressure, where what was accepted behind it is erratic.
     """
 
     before: FloatArray
@@ -47,6 +48,7 @@ class GapParts:
     after: FloatArray
     without: dict[str, float]
     alone: dict[str, float]
+    driven: tuple[float, float] | None = None
 
 
 def heldout_parts(
@@ -70,7 +72,7 @@ def heldout_parts(
     without = {name: percent * rms(_left_out(case, named, name)) for d in named for name in d.names}
     alone = _alone(case, result, named, percent)
     progress("held-out gap", 1.0)
-    return GapParts(before, again, after, without, alone)
+    return GapParts(before, again, after, without, alone, driven_errors(named))
 
 
 def idle_cause(
@@ -108,6 +110,20 @@ def retuning_pays(parts: GapParts) -> bool:
 def _predicted(case: Case, fits: dict[Decision, Fit]) -> FloatArray:
     channels = [d.findings.channel for d in fits]
     return predict_heldout(case, case.base, list(fits.values()), channels)
+
+
+def driven_errors(named: Sequence[Decision]) -> tuple[float, float] | None:
+    """The errors behind the measured pressure, given that, where they are of an erratic cause; else None.
+
+    From the command alone a slip may come a moment too early, and is then off by all of its way until the next.
+    """
+    for decision in named:
+        channel = decision.findings.channel
+        if channel.name == "position" and is_erratic(decision.accepted):
+            errors = (decision.findings.none.residuals, errors_on_channel(decision.accepted, channel))
+            before, after = (channel.sigma * rms(np.where(channel.use, e, np.nan)) for e in errors)
+            return before, after
+    return None
 
 
 def _with_false_readings(

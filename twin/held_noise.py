@@ -22,11 +22,12 @@ _ROUNDING = 0.3
 _FAVOURED = 1.5
 
 
-def noise_of_refreshed(recordings: Sequence[Recording], noise: NoiseModel) -> NoiseModel:
+def noise_of_refreshed(recordings: Sequence[Recording], noise: NoiseModel, repeats: bool = True) -> NoiseModel:
     """The noise with that of the position taken from fresh readings only, where most readings repeat the one before.
 
     Repeated values look still and free of noise; `noise` is returned as it is where the readings are fresh. In coarse
     steps any reading repeats: there it takes more to call them held, and what is in the next row is the next step.
+    `repeats`: see `estimate_noise`; readings that were not refreshed at the same instants differ while the stem moves.
     """
     stale = [scan_events(r, noise).evidence["stale_samples"] for r in recordings]
     step = lattice_step(np.concatenate([r.position for r in recordings])) or 0.0
@@ -34,7 +35,7 @@ def noise_of_refreshed(recordings: Sequence[Recording], noise: NoiseModel) -> No
     held = [e.estimates["hold_fraction"].value if e.found and e.log_likelihood_ratio > least else 0.0 for e in stale]
     if min(held) <= _MOSTLY_HELD:
         return noise
-    return replace(noise, position=estimate_noise([_fresh(r) for r in recordings]).position)
+    return replace(noise, position=estimate_noise([_fresh(r) for r in recordings], repeats).position)
 
 
 def as_reported(noise: NoiseModel) -> NoiseModel:

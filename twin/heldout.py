@@ -19,6 +19,7 @@ from twin.case import Case
 from twin.catalog import effects
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit
+from twin.fit.trial import Trial
 from twin.plant import Plant
 from twin.stages import combined
 
@@ -35,20 +36,20 @@ _FIRM = 0.3
 
 def fold_weights(case: Case) -> list[npt.NDArray[np.float64]]:
     """For each fold the weight of every row in its fit: 0 in the blocks that the fold predicts."""
-    fold_of = _folds(case)
+    fold_of = _folds(case.trials)
     return [(fold_of != fold).astype(np.float64) for fold in range(FOLDS)]
 
 
-def _folds(case: Case) -> npt.NDArray[np.int64]:
-    """The fold of every row of the case."""
-    return np.concatenate([_fold_of_rows(t.recording.time_s) for t in case.trials])
+def _folds(trials: Sequence[Trial]) -> npt.NDArray[np.int64]:
+    """The fold of every row of the trials."""
+    return np.concatenate([_fold_of_rows(t.recording.time_s) for t in trials])
 
 
 def _folds_of_everything(case: Case) -> npt.NDArray[np.int64]:
     """The fold that predicts each row of the whole: rows among those that a look was fitted to share their fold."""
     whole = case.everything
     if whole is case:
-        return _folds(case)
+        return _folds(case.trials)
     folds = [_fold_of_rows(t.recording.time_s) for t in whole.trials]
     for span in case.spans:
         rows = slice(span.start, span.stop)
@@ -89,8 +90,11 @@ def _erratic(names: Sequence[str], base: Plant) -> list[str]:
     return [name for name in there if name in known and known[name].erratic]
 
 
-def tied_note(names: Sequence[str], base: Plant) -> list[DataNote]:
-    """What to say of the held-out error, where one of the named causes is erratic, or an effect of the design."""
+def tied_note(names: Sequence[str], base: Plant, driven: tuple[float, float] | None = None) -> list[DataNote]:
+    """What to say of the held-out error, where one of the named causes is erratic, or an effect of the design.
+
+    `driven`: the errors before and after given the measured pressure, in the unit of the reading, where they are known.
+    """
     erratic = " and ".join(_erratic(names, base))
     if not erratic:
         return []
@@ -98,7 +102,28 @@ def tied_note(names: Sequence[str], base: Plant) -> list[DataNote]:
         f"for data held out, all numbers were tied to those of the whole record, by {_FIRM:g} of their standard "
         "deviations: the error on held-out data is less blind than with other causes"
     )
+    if driven is not None:
+        before, after = (100.0 * error / base.design.travel for error in driven)
+        handled += f"; given the measured pressure it falls from {before:.2g} to {after:.2g} % of travel"
     return [DataNote(f"with {erratic}, one slip that comes early outweighs many rows", handled)]
+
+
+def is_erratic(one: Fit) -> bool:
+    """Whether one of its causes, or an effect of the design, is erratic."""
+    return bool(_erratic(one.names, one.space.base))
+
+
+def errors_on_channel(one: Fit, channel: Channel) -> FloatArray:
+    """The channel's own residuals, in noises, on rows that the fit of their fold has not seen.
+
+    Given what drives that channel: a slip that a prediction from the command makes a moment too early is right there.
+    """
+    folds, error = _folds(channel.trials), np.full(channel.use.size, np.nan)
+    for fold in range(FOLDS):
+        held = (folds == fold) & channel.use
+        plant = refitted([one], [channel], (folds != fold).astype(np.float64))[0].plant
+        error[held] = channel.residuals(plant)[held]
+    return error
 
 
 def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:

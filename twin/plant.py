@@ -27,11 +27,11 @@ from twin.slots import (
     S_BAND,
     S_EARLY,
     S_GAIN,
-    S_LATE_S,
     S_PICKS,
     S_PICKS_FROM,
     S_SEEN,
     S_TRAVEL,
+    S_WAITS,
     S_ZERO,
     V_HIGH,
     V_RATE_CLOSE,
@@ -124,8 +124,8 @@ def reading_response(
     """
     out, taken_s = np.empty(grid.time_s.size), None
     if fresh is not None and c.sensor[S_SEEN] == 2.0:
-        early_s = c.sensor[S_EARLY] * fresh.slack_s + c.sensor[S_LATE_S]
-        taken_s = np.maximum(fresh.taken_s - early_s, 0.0)
+        latest_s = fresh.before_s if c.sensor[S_WAITS] else fresh.taken_s
+        taken_s = np.maximum(latest_s - c.sensor[S_EARLY] * fresh.slack_s, 0.0)
     if c.sensor[S_PICKS] != 0.0:
         stem = stem + picked_up(c, pressure)
     sensor_kernel(grid.time_s, stem, grid.offsets, c.sensor, out, taken_s)

@@ -37,17 +37,20 @@ class Freshness:
     """Of each row's reading, shapes (n,): the row in which it was new, and when it was taken, at the latest.
 
     `taken_s`: since the first row, by the converter's own clock where it has one; up to `slack_s` earlier is possible.
+    `before_s`: when the reading before it was.
     """
 
     rows: npt.NDArray[np.intp]
     taken_s: FloatArray
+    before_s: FloatArray
     slack_s: float
 
     def kept(self, rows: npt.NDArray[np.intp], time_s: FloatArray) -> Freshness:
         """The same for some rows of the recording (increasing); `time_s`: of all its rows."""
         new = np.maximum(self.rows[rows], rows[0])
         at = np.asarray(np.searchsorted(rows, new, side="right") - 1)
-        return Freshness(at, self.taken_s[rows] - float(time_s[rows[0]] - time_s[0]), self.slack_s)
+        cut_s = float(time_s[rows[0]] - time_s[0])
+        return Freshness(at, self.taken_s[rows] - cut_s, self.before_s[rows] - cut_s, self.slack_s)
 
 
 def freshness(recording: Recording) -> Freshness:
@@ -55,8 +58,14 @@ def freshness(recording: Recording) -> Freshness:
     rows, t = fresh_rows(recording.position), recording.time_s - recording.time_s[0]
     clock = clock_of(recording.time_s, recording.position)
     if clock is not None:
-        return Freshness(rows, clock.taken_s(t), clock.slack_s)
-    return Freshness(rows, t[rows], float(np.median(np.diff(t))))  # new since the row before
+        return Freshness(rows, clock.taken_s(t), _before(clock.taken_s(t)), clock.slack_s)
+    return Freshness(rows, t[rows], _before(t[rows]), float(np.median(np.diff(t))))  # new since the row before
+
+
+def _before(taken_s: FloatArray) -> FloatArray:
+    """When the reading before each row's was taken; the first of all has none before it."""
+    new = np.diff(taken_s, prepend=-np.inf) > 0.0
+    return np.asarray(taken_s[new][np.maximum(np.cumsum(new) - 2, 0)])
 
 
 def refreshes(time_s: FloatArray, reading: FloatArray) -> list[Refresh]:

@@ -67,9 +67,9 @@ def upheld(
     if before <= (HARDLY if apart or trace else SLIGHT) * floor or (vain and before < SLIGHT * floor):
         left = _named_only(judgement, shown)
         return (parts, left) if left.causes and not doubted(left, exact) else nothing(parts, judgement, disturbed)
-    if vain or leaves_too_much(before, after, wandering**0.5 * floor, judgement.causes, apart, exact, shown):
-        return _unexplained(parts, judgement)
-    return parts, judgement
+    errors = parts.driven or (before, after)
+    vain = vain or leaves_too_much(*errors, wandering**0.5 * floor, judgement.causes, apart, exact, shown)
+    return _unexplained(parts, judgement) if vain else (parts, judgement)
 
 
 def _seen(

@@ -16,6 +16,8 @@ from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
 from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
+from twin.held_noise import noise_of_refreshed
+from twin.noise.model import estimate_noise
 from twin.plant import Inserted, Plant, reading_response
 from twin.refresh import fresh_rows, freshness, new_only, refreshed_together
 from twin.simulate import simulate_recording
@@ -47,6 +49,18 @@ def stale() -> Recording:
 def test_a_row_is_as_fresh_as_the_last_change() -> None:
     reading = np.array([1.0, 1.0, 2.0, 2.0, 2.0, np.nan, 3.0, 1.0])
     assert fresh_rows(reading).tolist() == [0, 0, 2, 2, 2, 5, 6, 7]
+
+
+def test_held_readings_are_measured_without_repeats_where_it_is_known_why_these_differ() -> None:
+    """Two strokes that were not refreshed at the same instants differ while the stem moves: that is no noise."""
+    record, new = a_record(Plant(DesignModel(), (CREEP,)), twice=True, n=2400), np.zeros(2400, dtype=bool)
+    new[np.minimum(np.cumsum(np.random.default_rng(3).integers(1, 4, 2400)), 2399)] = True
+    rows = np.maximum.accumulate(np.where(new, np.arange(2400), 0))
+    readings = [replace(record, position=record.position[rows])]
+    noise = estimate_noise(readings, repeats=False)
+    by_repeats, calm = (noise_of_refreshed(readings, noise, repeats).position for repeats in (True, False))
+    assert by_repeats.source == "repeats" != calm.source
+    assert "repeats" not in calm.by_source and by_repeats.sigma > 1.4 * calm.by_source["still"]
 
 
 def test_a_replay_holds_what_the_record_held(stale: Recording) -> None:
@@ -107,16 +121,18 @@ def test_one_slow_converter_for_both_signals_is_told_from_a_slow_position(stale:
     assert told == [False, False, True, False]
 
 
-def test_a_buffered_reading_is_as_old_as_it_waited() -> None:
-    """A stem that goes evenly is read where it was so long ago."""
-    time_s = 0.1 * np.arange(400)
-    form = effect("stale_samples").form("buffered")
-    c = Plant(DesignModel(), (Inserted("stale_samples", form, (0.0, 1.2)),)).coefficients(40.0)
+def test_a_buffered_reading_is_the_one_before() -> None:
+    """A stem that goes evenly is read where it was a refresh before; of rows that are left out the refreshes count."""
+    time_s, period_s = 0.1 * np.arange(400), 0.5
+    c = Plant(DesignModel(), (Inserted("stale_samples", effect("stale_samples").form("buffered"), (0.0,)),))
     grid, stem = make_grid(time_s, 0.02), 0.01 * np.linspace(0.0, 39.9, 1996)
-    seen = Recording("r", time_s, np.zeros(400), np.repeat(0.01 * time_s[::5], 5))
-    fresh = freshness(seen)
-    late = (0.01 * fresh.taken_s - reading_response(c, grid, stem, np.zeros_like(stem), fresh))[50:] / 0.01
-    assert late == pytest.approx(np.full(350, 1.2), abs=1e-6)
+    fresh = freshness(Recording("r", time_s, np.zeros(400), np.repeat(0.01 * time_s[::5], 5)))
+    reading = reading_response(c.coefficients(40.0), grid, stem, np.zeros_like(stem), fresh)
+    assert (0.01 * fresh.taken_s - reading)[5:] / 0.01 == pytest.approx(np.full(395, period_s), abs=1e-5)
+    some = np.arange(100, 400, 7)
+    np.testing.assert_allclose(
+        fresh.kept(some, time_s).before_s + time_s[100], fresh.taken_s[some] - period_s, atol=1e-5
+    )
 
 
 def through_one_converter() -> Recording:

@@ -9,7 +9,7 @@ import numpy as np
 from logs.recording import Recording
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.refresh import refreshes
-from twin.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_LATE_S, S_SEEN
+from twin.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN, S_WAITS
 
 _PERIOD = Parameter(
     name="period",
@@ -33,16 +33,6 @@ _PHASE = Parameter(
     size=False,
 )
 
-_WAITS = Parameter(
-    name="waits",
-    kind="time",
-    lower=0.0,
-    upper=10.0,
-    starts=(0.5,),
-    scale=1.0,
-    doc="how long a reading waits in a buffer before it is shown",
-    size=False,
-)
 _EARLY = Parameter(
     name="early",
     kind="fraction",
@@ -70,14 +60,7 @@ def _own_clock(c: Coefficients, values: Sequence[float]) -> None:
 
 def _buffered(c: Coefficients, values: Sequence[float]) -> None:
     _own_clock(c, values)
-    c.sensor[S_LATE_S] = values[1]
-
-
-def _waits(records: Sequence[Recording], _scales: Scales) -> list[tuple[float, ...]]:
-    """One and two refreshes of waiting."""
-    time_s, reading = records[0].time_s, records[0].position
-    changes = time_s[np.flatnonzero(np.diff(reading) != 0.0)]
-    return [(0.5, k * float(np.median(np.diff(changes)))) for k in (1, 2)] if changes.size > 2 else []
+    c.sensor[S_WAITS] = 1.0
 
 
 def _seen(records: Sequence[Recording], _scales: Scales) -> list[tuple[float, ...]]:
@@ -96,13 +79,13 @@ EFFECT = Effect(
     stage="sensor",
     claim="The DAQ refreshes the reading more slowly than it is polled.",
     equations="y(t) = x(n period + phase) until the next refresh; as_seen: until the recorded reading changes again; "
-    "own_clock: by the clock that the changes show, else up to a row before them; buffered: that long before",
+    "own_clock: by the clock that the changes show, else up to a row before them; buffered: the one before",
     source="Astrom, Wittenmark, Computer-Controlled Systems, 3rd ed. (Prentice Hall 1997; sample and hold)",
     forms=(
         Form("periodic", (_PERIOD, _PHASE), _apply, _seen),
         Form("as_seen", (), _as_seen, seen=True),
         Form("own_clock", (_EARLY,), _own_clock, seen=True),
-        Form("buffered", (_EARLY, _WAITS), _buffered, _waits, seen=True),
+        Form("buffered", (_EARLY,), _buffered, seen=True),
     ),
     twins=("sensor_lag",),
 )
