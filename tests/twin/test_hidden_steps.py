@@ -48,3 +48,13 @@ def test_the_look_at_such_a_record_leaves_nothing_out(monkeypatch: pytest.Monkey
     assert "all of them in steps of 0.13 s" in notes[0].handled
     monkeypatch.setattr(thin, "hidden_step_s", lambda _case, _steps: 0.0)
     assert len(look_at(case)[0].spans) > 1
+
+
+def test_windows_with_few_rows_are_not_looked_through(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two rows a second for more than two hours: windows would show a seventh of what little there is."""
+    command = np.interp(np.arange(16_000) / 8.0, np.arange(2000), loop(2000))
+    case = recorded(command, 0.5)
+    assert [r.n for r in look_at(case)[0].recordings] == [16_000]
+    monkeypatch.setattr(thin, "NOT_MANY_ROWS", 15_000)
+    seen = look_at(case)[0]
+    assert len(seen.spans) > 1 and sum(r.n for r in seen.recordings) < thin.FEW_ROWS
