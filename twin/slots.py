@@ -62,7 +62,8 @@ EP_SWING_COS = 42  # by how much it is higher at the beginning of a recording [p
 EP_SWING_SIN = 43  # and a quarter of the period later
 EP_CUT = 44  # supply that swings so and cuts the pressure off, as EP_CLIP does one that does not [pressure]
 EP_MIDDLE = 45  # where the stem is as EP_FULL_UP and EP_FULL_DOWN are the slopes [position]
-EP_COUNT = 46
+EP_DEAD_FALLS = 46  # by how much longer a falling command is delayed than EP_DEAD_S, or, < 0, shorter [s]
+EP_COUNT = 47
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]
@@ -112,9 +113,7 @@ V_DRAG_OPEN_S = 43  # and of one that opens
 V_RELAX = 44  # pressure for each distance of the stem that a spring at first takes and then lets go [pressure/position]
 V_RELAX_TAU_S = 45
 V_ON_STEM = 46  # compliance, if what friction grows by holds the stem off its target [position/pressure]; 0: play grows
-V_STRETCHES = (
-    47  # 1: what creeps is added to the stem, up to its stops, and is not a part of its motion that comes late
-)
+V_STRETCHES = 47  # 1: what creeps is added to the stem, up to its stops, and is no part of its motion that comes late
 V_STRETCHED = 48  # what there is of that at the start [-]
 V_SQUARED_S = (
     49  # what drag adds to the lag of a stem that closes, and (50) opens, for each unit of speed [s2/position]

@@ -5,6 +5,8 @@ First the goal (delay, ignored band, gain, zero, supply), then the lag toward it
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numba import njit
 
@@ -24,6 +26,7 @@ from twin.slots import (
     EP_CLOG_DOWN,
     EP_CLOG_UP,
     EP_CUT,
+    EP_DEAD_FALLS,
     EP_DEAD_S,
     EP_DRIFTS,
     EP_FULL_DOWN,
@@ -78,9 +81,11 @@ def ep_kernel(
 def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float) -> FloatArray:
     """What the lag goes to: per row where it is constant within one, else fine, shape (offsets[-1] + 1,)."""
     goal, size = command, int(offsets[-1]) + 1
-    if c[EP_DEAD_S] > 0.0:
-        goal = np.empty(size)
-        _delayed(time_s, command, offsets, c[EP_DEAD_S], goal)
+    if dead_times_s(c):
+        goals = [np.empty(size) for _ in dead_times_s(c)]
+        for dead_s, each in zip(dead_times_s(c), goals, strict=True):
+            _delayed(time_s, command, offsets, dead_s, each)
+        goal = latest(c, goals)
     if c[EP_MIXED_S] > 0.0:
         source, goal = goal, np.empty(size)
         _mixed(time_s, source, offsets, c[EP_MIXED_S], command[0], goal)
@@ -97,6 +102,19 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         source, goal = goal, np.empty(size)
         ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
     return goal
+
+
+def dead_times_s(c: FloatArray) -> list[float]:
+    """How long the commands take to arrive [s]: nothing for no dead time, two where rising and falling ones differ."""
+    rising_s, longer_s = float(c[EP_DEAD_S]), float(c[EP_DEAD_FALLS])
+    return [rising_s, rising_s + longer_s] if longer_s != 0.0 else [rising_s][: rising_s > 0.0]
+
+
+def latest(c: FloatArray, goals: Sequence[FloatArray]) -> FloatArray:
+    """What has arrived of commands that took each of `dead_times_s`: of two the one that goes where it takes longer."""
+    if len(goals) == 1:
+        return goals[0]
+    return np.maximum(*goals) if c[EP_DEAD_FALLS] > 0.0 else np.minimum(*goals)
 
 
 def through_ports(c: FloatArray) -> FloatArray:

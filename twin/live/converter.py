@@ -17,6 +17,8 @@ from twin.kernels.ep import (
     _slewed,
     boosted,
     bounded,
+    dead_times_s,
+    latest,
     through_ports,
 )
 from twin.kernels.follow import follow
@@ -29,7 +31,6 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
-    EP_DEAD_S,
     EP_GAIN,
     EP_MIXED_S,
     EP_RINGS_S,
@@ -91,8 +92,10 @@ class Converter:
     def _goal(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
         c = self._c
         goal = np.array([command, command])
-        if c[EP_DEAD_S] > 0.0:
-            goal = self._delayed(time_s, offsets, command)
+        if dead := dead_times_s(c):
+            self._rows.append((float(time_s[1]), command))
+            self._forget(float(time_s[0]) - max(dead))
+            goal = latest(c, [self._delayed(time_s, offsets, one_s) for one_s in dead])
         if c[EP_MIXED_S] > 0.0:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._mixed = _mixed(time_s, source, offsets, float(c[EP_MIXED_S]), self._mixed, goal)
@@ -110,17 +113,18 @@ class Converter:
             ringing_pass(time_s, offsets, source, c, self._ringing, goal)
         return goal
 
-    def _delayed(self, time_s: FloatArray, offsets: np.ndarray, command: float) -> FloatArray:
-        """The commands of a dead time ago, mean over each fine step; forgets what no step can need again."""
-        dead_s = float(self._c[EP_DEAD_S])
-        self._rows.append((float(time_s[1]), command))
-        while len(self._rows) > 2 and self._rows[1][0] <= time_s[0] - dead_s:
+    def _forget(self, before_s: float) -> None:
+        """Forgets the commands that no step can need again."""
+        while len(self._rows) > 2 and self._rows[1][0] <= before_s:
             self._rows.popleft()
+
+    def _delayed(self, time_s: FloatArray, offsets: np.ndarray, dead_s: float) -> FloatArray:
+        """The commands of a dead time ago, mean over each fine step."""
         times, commands = (np.array(column) for column in zip(*self._rows, strict=True))
         steps = int(offsets[1])
         step_s = (time_s[1] - time_s[0]) / steps
         goal, j, begin = np.empty(steps + 1), 0, float(time_s[0]) - dead_s
-        goal[0] = command
+        goal[0] = commands[-1]
         for f in range(1, steps + 1):
             goal[f], j = _mean_command(times, commands, begin, begin + step_s, j)
             begin += step_s
