@@ -15,9 +15,10 @@ from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
 from twin.choose.search_rules import SearchRules
-from twin.diagnose import Settings, diagnose
+from twin.diagnose import Settings, _prepared, diagnose
 from twin.held_noise import noise_of_refreshed
 from twin.noise.model import estimate_noise
+from twin.partial import Known
 from twin.plant import Inserted, Plant, reading_response
 from twin.refresh import fresh_rows, freshness, new_only, refreshed_together
 from twin.simulate import simulate_recording
@@ -61,6 +62,9 @@ def test_held_readings_are_measured_without_repeats_where_it_is_known_why_these_
     by_repeats, calm = (noise_of_refreshed(readings, noise, repeats).position for repeats in (True, False))
     assert by_repeats.source == "repeats" != calm.source
     assert "repeats" not in calm.by_source and by_repeats.sigma > 1.4 * calm.by_source["still"]
+    known, quiet = Known((readings[0],), Plant(DesignModel())), lambda _what, _share: None
+    searched = (_prepared(known, Settings(), quiet, repeats)[0].noise.position for repeats in (True, False))
+    assert [noise.source == "repeats" for noise in searched] == [True, False]
 
 
 def test_a_replay_holds_what_the_record_held(stale: Recording) -> None:
