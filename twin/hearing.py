@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.likelier import likelier
+from twin.choose.outside import outside_of
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
 from twin.closure import rms
@@ -16,7 +17,7 @@ from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause, passes
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.tolerance import forgiven, needless_number, within_tolerance
-from twin.upheld import doubted, explained_to_noise, nothing, shown_by_pressure, upheld
+from twin.upheld import DOUBTFUL, doubted, explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
@@ -30,6 +31,12 @@ def weightiest_first(judgement: Judgement, parts: GapParts, travel: float) -> Ju
     before = 100.0 * rms(parts.before) / travel
     causes = sorted(judgement.causes, key=lambda c: (-c.probability, -parts.without.get(c.name, before)))
     return replace(judgement, causes=tuple(causes))
+
+
+def _slight_rival(result: StageResult) -> bool:
+    """Whether what explains a slight gap behind the measured pressure best is none of the known effects."""
+    behind = result.decisions[1:]
+    return any(outside_of(d) is not None and d.findings.none.mse < DOUBTFUL**2 * d.floor for d in behind)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +69,8 @@ class Hearing:
     ) -> tuple[StageResult, Judgement, GapParts]:
         """What unseen data leave standing.
 
-        Where what is behind the pressure would take with it what the pressure shows by itself, that is heard alone.
+        Where what is behind the pressure would take with it what the pressure shows by itself, that is heard alone; so
+        it is where a stem that is hardly off resembles something from outside of the vocabulary.
         """
         result, judgement, parts = self._needed(result, judgement, progress, floor)
         upholds = self._upheld(result, judgement, parts, floor)
@@ -74,7 +82,7 @@ class Hearing:
                 return other, stands[1], stands[0]
         shown = shown_by_pressure(result)
         behind = {c.name for c in judgement.causes} - set(shown)
-        if upholds[1].verdict != "unexplained" or not shown or not behind:
+        if upholds[1].verdict != "unexplained" or not shown or not (behind or _slight_rival(result)):
             return result, upholds[1], upholds[0]
         less = replace(result, decisions=(result.decisions[0], *map(silent, result.decisions[1:])))
         alone = self.judgement(less)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import twin.hearing
+import twin.verdict
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
@@ -68,6 +69,26 @@ def test_a_guess_about_the_stem_is_left_out_alone(
     assert [c.name for c in judgement.causes] == names
     assert bool(result.decisions[1].names) == (not names)
     assert parts.before[0] == before * case.sigma_y
+
+
+@pytest.mark.parametrize(("gap", "verdict"), [(2.0, "effect"), (9.0, "unexplained")])
+def test_what_a_stem_that_is_hardly_off_resembles_takes_nothing_with_it(
+    monkeypatch: pytest.MonkeyPatch, gap: float, verdict: str
+) -> None:
+    """A converter shows its cause; behind it, something from outside of the vocabulary explains a slight rest best."""
+    record = Recording("r", 0.1 * np.arange(400), np.full(400, 9.0), np.full(400, 0.3), np.full(400, 9.0))
+    case = make_case([record], DESIGN)
+    decisions = (accepted("pressure", "supply_saturation", 3000.0), accepted("position", "creep", gap))
+    levels = GapParts(*(case.sigma_y * np.full(8, level) for level in (8.0, 6.0, 1.5)), {}, {})
+    monkeypatch.setattr(twin.hearing, "heldout_parts", lambda *_: levels)
+    for module in (twin.hearing, twin.verdict):
+        monkeypatch.setattr(module, "outside_of", lambda d: "creep" if "creep" in d.names else None)
+    hearing = Hearing(case, decisions[1].findings.none, Sensing((), {}, 0.0), 1.0, Weights(), False)
+    result = StageResult(case, decisions, case.trials)
+    result, judgement, _ = hearing.held_out(result, hearing.judgement(result), lambda *_: None, case.sigma_y)
+    assert judgement.verdict == verdict
+    assert [c.name for c in judgement.causes] == (["supply_saturation"] if verdict == "effect" else [])
+    assert bool(result.decisions[1].names) == (verdict == "unexplained")
 
 
 @pytest.mark.parametrize(
