@@ -34,9 +34,9 @@ _LOOSE = 20.0
 _FIRM = 0.3
 
 
-def fold_weights(case: Case) -> list[npt.NDArray[np.float64]]:
+def fold_weights(trials: Sequence[Trial]) -> list[npt.NDArray[np.float64]]:
     """For each fold the weight of every row in its fit: 0 in the blocks that the fold predicts."""
-    fold_of = _folds(case.trials)
+    fold_of = _folds(trials)
     return [(fold_of != fold).astype(np.float64) for fold in range(FOLDS)]
 
 
@@ -118,17 +118,16 @@ def errors_on_channel(one: Fit, channel: Channel) -> FloatArray:
 
     Given what drives that channel: a slip that a prediction from the command makes a moment too early is right there.
     """
-    folds, error = _folds(channel.trials), np.full(channel.use.size, np.nan)
-    for fold in range(FOLDS):
-        held = (folds == fold) & channel.use
-        plant = refitted([one], [channel], (folds != fold).astype(np.float64))[0].plant
-        error[held] = channel.residuals(plant)[held]
+    error = np.full(channel.use.size, np.nan)
+    for weights in fold_weights(channel.trials):
+        held = (weights == 0.0) & channel.use
+        error[held] = channel.residuals(refitted([one], [channel], weights)[0].plant)[held]
     return error
 
 
 def predict_heldout(case: Case, base: Plant, fits: Sequence[Fit], channels: Sequence[Channel]) -> FloatArray:
     """Errors of the whole chain on rows that the fits of their fold have not seen; NaN where rows do not count."""
-    return predict_folds(case, base, fits, channels, fold_weights(case), _folds_of_everything(case))
+    return predict_folds(case, base, fits, channels, fold_weights(case.trials), _folds_of_everything(case))
 
 
 def predict_folds(

@@ -28,6 +28,6 @@ def test_a_row_is_predicted_by_the_fit_that_has_not_seen_it(monkeypatch: pytest.
     monkeypatch.setattr("twin.heldout.refitted", told)
     monkeypatch.setattr("twin.heldout.combined", lambda _base, plants: plants[0])
     error = predict_heldout(case, case.base, [none], [channel])
-    unseen, counts = fold_weights(case)[0] == 0.0, np.isfinite(error)
+    unseen, counts = fold_weights(case.trials)[0] == 0.0, np.isfinite(error)
     assert np.mean(error[unseen & counts]) == pytest.approx(-0.1, abs=0.005)
     assert np.mean(error[~unseen & counts]) == pytest.approx(0.0, abs=0.005)

@@ -81,9 +81,9 @@ def ep_kernel(
 def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: FloatArray, p0: float) -> FloatArray:
     """What the lag goes to: per row where it is constant within one, else fine, shape (offsets[-1] + 1,)."""
     goal, size = command, int(offsets[-1]) + 1
-    if dead_times_s(c):
-        goals = [np.empty(size) for _ in dead_times_s(c)]
-        for dead_s, each in zip(dead_times_s(c), goals, strict=True):
+    if dead := dead_times_s(c):
+        goals = [np.empty(size) for _ in dead]
+        for dead_s, each in zip(dead, goals, strict=True):
             _delayed(time_s, command, offsets, dead_s, each)
         goal = latest(c, goals)
     if c[EP_MIXED_S] > 0.0:
