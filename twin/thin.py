@@ -14,18 +14,17 @@ from math import ceil, floor
 import numpy as np
 import numpy.typing as npt
 
-from logs.recording import DataNote, FloatArray, Recording
+from logs.recording import DataNote, Recording
 from twin.case import Case, Span, fine_step_s
 from twin.fit.trial import Trial, make_trial
 from twin.hidden_steps import hidden_step_s
 from twin.noise.model import NoiseModel, SignalNoise
 from twin.place import Place
 from twin.refresh import Freshness
+from twin.rows import kept_rows, thinned
 from twin.simulate import beginning
 from twin.stages import StageResult, driven_again
 from twin.timegrid import make_grid
-
-Rows = npt.NDArray[np.int64]
 
 #: Above this many rows, or seconds, a look is taken; it has about so many.
 MOST_ROWS = 20_000
@@ -47,7 +46,6 @@ _CHOICES = 8
 #: At the start of a window nobody knows what the stem remembers; so many lags, or this share, are simulated unseen.
 _LEAD_LAGS = 20.0
 _LEAD_SHARE = 0.2
-_JUMP = 0.005  # share of the command's span that is a jump
 
 
 def look_at(case: Case) -> tuple[Case, list[DataNote]]:
@@ -190,47 +188,6 @@ def _led_in(trial: Trial, lead_s: float) -> Trial:
     time_s = trial.recording.time_s
     lead_s = min(lead_s, _LEAD_SHARE * float(time_s[-1] - time_s[0]))
     return replace(trial, use_y=trial.use_y & (time_s - time_s[0] >= lead_s))
-
-
-def kept_rows(command: FloatArray, most: int) -> Rows:
-    """At most `most` of the rows 0..n-1, evenly; besides them the last, and both sides of every jump of the command."""
-    n = command.size
-    if most >= n:
-        return np.arange(n, dtype=np.int64)
-    change = np.abs(np.diff(command))
-    least = _JUMP * max(float(np.ptp(command)), 1e-12)
-    jumps = np.flatnonzero(change > least)
-    if jumps.size > most // 4:  # a command that moves all the time has no edges; its largest ones are kept
-        jumps = np.sort(jumps[np.argsort(change[jumps], kind="stable")[::-1][: most // 4]])
-    edges = np.concatenate([[0, n - 1], jumps, jumps + 1])
-    stride = ceil(n / most)
-    return np.unique(np.concatenate([edges, np.arange(0, n, stride)])).astype(np.int64)
-
-
-def thinned(recording: Recording, rows: Rows) -> Recording:
-    """The recording at `rows` (ascending, the first is 0) with the mean command since the row before."""
-    time_s = recording.time_s
-    if rows.size == recording.n:
-        return recording
-    worked = np.concatenate([[0.0], np.cumsum(recording.command[1:] * np.diff(time_s))])
-    command = recording.command[rows].copy()
-    command[1:] = np.diff(worked[rows]) / np.diff(time_s[rows])
-    gaps = None
-    if recording.gap_before is not None:
-        gaps = np.diff(np.concatenate([[0], np.cumsum(recording.gap_before)])[rows + 1], prepend=0) > 0
-
-    def at(values: FloatArray | None) -> FloatArray | None:
-        return None if values is None else values[rows]
-
-    return replace(
-        recording,
-        time_s=time_s[rows],
-        command=command,
-        position=recording.position[rows],
-        pressure=at(recording.pressure),
-        target=at(recording.target),
-        gap_before=gaps,
-    )
 
 
 def _thinned_noise(noise: NoiseModel, stride: float) -> NoiseModel:

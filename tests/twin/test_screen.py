@@ -12,6 +12,7 @@ from twin.choose.screen import make_screen, prospects
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import fit, starts_of
+from twin.fit.larger_steps import in_larger_steps
 from twin.fit.space import Cause, make_space
 from twin.plant import Inserted, Plant
 
@@ -40,7 +41,7 @@ def test_the_missing_cause_comes_first() -> None:
         cause("friction_drift", "linear"),
         cause("sensor_lag", "first_order"),
     ]
-    screen = make_screen(channel, base, parent)
+    screen = make_screen(in_larger_steps(channel), base, parent)
     found = prospects(screen, [(known, rival) for rival in rivals], [])
     assert found[0].causes[-1].name == "lvdt_nonlinearity"
     full = fit(channel, found[0].space, [found[0].start])
@@ -54,7 +55,7 @@ def test_nothing_is_promised_where_nothing_is_missing() -> None:
     channel = channel_with()
     base = Plant(DesignModel())
     empty = make_space(base, (), (), Scales())
-    screen = make_screen(channel, base, fit(channel, empty, [np.zeros(0)]))
+    screen = make_screen(in_larger_steps(channel), base, fit(channel, empty, [np.zeros(0)]))
     one = screen.prospect((cause("lvdt_drift", "linear"),), [])
     assert 0.0 <= one.gain < 20.0  # of some four thousand squares
 
@@ -70,7 +71,7 @@ def test_a_form_whose_best_start_is_known_from_beside_another_is_looked_at_there
         for name in ("one_tail", "two_tails")
         for space in (make_space(base, (cause("creep", name),), channel.numbers, scales),)
     ]
-    first, second = (make_screen(channel, base, end) for end in ends)
+    first, second = (make_screen(in_larger_steps(channel), base, end) for end in ends)
     zone = cause("position_dependent_friction", "spot")
     [seen] = prospects(first, [(*ends[0].space.causes, zone)], [])
     looks: list[int] = []

@@ -13,8 +13,9 @@ from tests.twin.toy_valve import Toy, record, staircase
 from twin import thin
 from twin.case import Case, make_case
 from twin.heldout import predict_heldout
+from twin.rows import kept_rows, thinned
 from twin.simulate import simulate_recording
-from twin.thin import kept_rows, look_at, thinned
+from twin.thin import look_at
 
 
 @pytest.fixture(scope="module")

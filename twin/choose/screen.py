@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, starts_of
+from twin.fit.larger_steps import Look
 from twin.fit.least_squares import jacobian
 from twin.fit.space import Cause, Space, cause_starts, make_space
 from twin.plant import Plant
@@ -52,12 +54,16 @@ class Prospect:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Screen:
-    """The smaller hypothesis at its end: unknowns `z`, residuals `r` (channel and prior), what it can still follow."""
+    """The smaller hypothesis at its end: unknowns `z`, residuals `r` (channel and prior), what it can still follow.
+
+    `channel` is in larger steps than the one that was fitted, and `at` the residuals that it has there.
+    """
 
     channel: Channel
     base: Plant
     space: Space
     z: FloatArray
+    at: FloatArray
     r: FloatArray
     basis: FloatArray
 
@@ -97,7 +103,7 @@ class Screen:
     def _way(self, moved: FloatArray) -> FloatArray:
         """The direction before the unknowns follow."""
         way = np.zeros(self.r.size)
-        np.subtract(moved, self.r[: moved.size], out=way[: moved.size])
+        np.subtract(moved, self.at, out=way[: moved.size])
         return way
 
     def _gain(self, moved: FloatArray) -> float:
@@ -113,20 +119,17 @@ class Screen:
         return 2.0 * size * along - size**2 * length
 
 
-def make_screen(channel: Channel, base: Plant, parent: Fit) -> Screen:
+def make_screen(look: Look, base: Plant, parent: Fit) -> Screen:
     """Prepares to look beyond `parent`, with all design numbers of the channel as nuisances."""
-    space = make_space(base, parent.space.causes, channel.numbers, parent.space.scales)
+    space = make_space(base, parent.space.causes, look.channel.numbers, parent.space.scales)
     z = starts_of(space, [parent])[0]
-    spreads = space.spreads
-
-    def residuals(at: FloatArray) -> FloatArray:
-        return np.concatenate([channel.residuals(space.plant(at)), at / spreads])
-
-    r = residuals(z)
-    basis, triangle = np.linalg.qr(jacobian(residuals, z, r, space.steps, space.upper))
+    residuals = partial(look.residuals, space)
+    at = residuals(z)
+    basis, triangle = np.linalg.qr(jacobian(residuals, z, at, space.steps, space.upper))
     size = np.abs(np.diag(triangle))
     basis = basis[:, size > 1e-9 * max(float(size.max(initial=0.0)), 1e-300)]
-    return Screen(channel, base, space, z, r - basis @ (basis.T @ r), basis)
+    r = np.concatenate([parent.residuals[look.rows], z / space.spreads])  # as they were fitted: larger steps miss more
+    return Screen(look.channel, base, space, z, at[: look.rows.size], r - basis @ (basis.T @ r), basis)
 
 
 def prospects(

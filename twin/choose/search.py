@@ -30,6 +30,7 @@ from twin.choose.slips import several_slips
 from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
+from twin.fit.larger_steps import Look, in_larger_steps
 from twin.fit.retuning import retuned
 from twin.fit.space import Cause, make_space
 from twin.plant import Plant
@@ -52,6 +53,10 @@ class Searcher:
     origins: list[Fit] = field(default_factory=list)  # hypotheses without a cause, from where pairs are looked for
     tried: list[Fit] = field(default_factory=list)  # every cause alone in every form, to start larger hypotheses from
     stopped: Event = field(default_factory=Event)
+    look: Look = field(init=False)  # the channel as further causes are looked for
+
+    def __post_init__(self) -> None:
+        self.look = in_larger_steps(self.channel)
 
     def run(self) -> Findings:
         """The whole search."""
@@ -171,27 +176,27 @@ class Searcher:
 
     def _fit_from(self, causes: tuple[Cause, ...], parent: Fit) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
-        return fit(self.channel, space, starts_of(space, [parent]), rounds=self.rules.rounds)
+        return fit(self.channel, space, starts_of(space, [parent]), rounds=self.rules.rounds, look=self.look)
 
     def _looked(self, beyond: Sequence[Beyond]) -> list[Prospect]:
         """Beyond each of a few hypotheses, those that a look from where it ended finds most promising."""
         seen: list[Prospect] = []
         best: list[Prospect] = []
         for parent, todo in beyond:
-            screen = make_screen(self.channel, self.base, parent)
+            screen = make_screen(self.look, self.base, parent)
             ranked = prospects(screen, self._wanted(todo), self.tried, seen)
             seen += ranked
             best += some_of_each(ranked, self.rules.screened, self.rules.forms)
         return best
 
     def _fit_prospect(self, one: Prospect | Pair) -> Fit:
-        return fit(self.channel, one.space, [one.start], rounds=self.rules.rounds)
+        return fit(self.channel, one.space, [one.start], rounds=self.rules.rounds, look=self.look)
 
     def _paired(self, causes: Sequence[Cause]) -> list[Fit]:
         """Full fits of the pairs of effects whose moves of the residual add up best."""
 
         def best(origin: Fit) -> list[Pair]:
-            screen = make_screen(self.channel, self.base, origin)
+            screen = make_screen(self.look, self.base, origin)
             return promising_pairs(screen, self._wanted(causes), self.tried, together)[: self.rules.paired]
 
         todo = [pair for some in self._each(best, self.origins, "pairs") for pair in some]
@@ -203,7 +208,8 @@ class Searcher:
 
     def _fit(self, causes: tuple[Cause, ...], known: Sequence[Fit]) -> Fit:
         space = make_space(self.base, causes, self._numbers(causes), self.scales)
-        return fit(self.channel, space, starts_of(space, known, self.channel.recordings), rounds=self.rules.rounds)
+        starts = starts_of(space, known, self.channel.recordings)
+        return fit(self.channel, space, starts, rounds=self.rules.rounds, look=self.look)
 
     def _each(self, function: Callable[[_T], _R], items: Sequence[_T], what: str) -> list[_R]:
         """`function` of each of the items, side by side in threads; in their order."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from itertools import islice
 
 import numpy as np
 
 from logs.recording import FloatArray, Recording
 from twin.fit.channel import Channel
+from twin.fit.larger_steps import Look
 from twin.fit.least_squares import Minimum, Residuals, descend, minimise
 from twin.fit.space import Space, cause_starts
 from twin.plant import Plant
@@ -96,11 +98,12 @@ def fit(
     refine: int = 1,
     weights: FloatArray | None = None,
     anchor: tuple[FloatArray, FloatArray] | None = None,
+    look: Look | None = None,
 ) -> Fit:
     """Fits `space` from the best `refine` of the `starts` (vectors in z). `weights` (0..1 per row) holds rows out.
 
     `anchor`: where the unknowns are believed to be (z) and how surely (standard deviations in z); their prior, no
-    narrower than ever, stands there too.
+    narrower than ever, stands there too. `look`: where starts are compared and slopes taken, if nothing is weighed.
     """
     spreads = space.spreads
     root = None if weights is None else np.sqrt(weights)
@@ -111,13 +114,15 @@ def fit(
         held = [] if anchor is None else [(z - anchor[0]) / anchor[1]]
         return np.concatenate([r if root is None else r * root, (z - centre) / spreads, *held])
 
-    ranked = _ranked(residuals, starts)
+    quick = look if look is not None and look.larger else None
+    ranked = _ranked(partial(quick.residuals, space) if quick else residuals, starts)
     ranked = [*ranked[:refine], *_in_motion(channel, space, ranked, refine), *_slower(space, ranked, refine)]
     rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)
+    about = partial(quick.slopes, space) if quick else None
     minima = []
     for start in ranked:
         z = descend(residuals, start, rough, space.lower, space.upper) if rough.size else start
-        minima.append(minimise(residuals, z, space.lower, space.upper, space.steps, rounds))
+        minima.append(minimise(residuals, z, space.lower, space.upper, space.steps, rounds, about))
     # what was looked for further off has to be better by more than noise makes a number that does not matter
     best = minima[min(range(len(minima)), key=lambda k: minima[k].cost + (_CLEARLY if k >= refine else 0.0))]
     return _finished(channel, space, best, weights, sum(m.evaluations for m in minima) + len(starts))

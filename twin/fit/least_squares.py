@@ -15,6 +15,7 @@ import numpy as np
 from logs.recording import FloatArray
 
 Residuals = Callable[[FloatArray], FloatArray]
+Slopes = Callable[[FloatArray], FloatArray]
 
 _DAMPINGS = (1e-3, 1e-1, 1e1, 1e3)
 
@@ -50,9 +51,18 @@ def jacobian(residuals: Residuals, z: FloatArray, r: FloatArray, steps: FloatArr
 
 
 def minimise(
-    residuals: Residuals, start: FloatArray, lower: FloatArray, upper: FloatArray, steps: FloatArray, rounds: int = 12
+    residuals: Residuals,
+    start: FloatArray,
+    lower: FloatArray,
+    upper: FloatArray,
+    steps: FloatArray,
+    rounds: int = 12,
+    about: Slopes | None = None,
 ) -> Minimum:
-    """Minimises the sum of squares from `start` within the bounds; stops when a round gains less than 1e-4 of it."""
+    """Minimises the sum of squares from `start` within the bounds; stops when a round gains less than 1e-4 of it.
+
+    `about`: a Jacobian that costs less and is about right, for as long as its steps lead anywhere.
+    """
     z = np.clip(start, lower, upper)
     r = residuals(z)
     cost = float(r @ r)
@@ -60,7 +70,7 @@ def minimise(
     normal = np.zeros((z.size, z.size))
     first = 0
     for _ in range(rounds if z.size else 0):
-        j = jacobian(residuals, z, r, steps, upper)
+        j = jacobian(residuals, z, r, steps, upper) if about is None else about(z)
         used += z.size
         normal = j.T @ j
         gradient = j.T @ r
@@ -75,7 +85,9 @@ def minimise(
                 z, r, cost, better = trial, new_r, new_cost, True
                 first = max(0, index - 1)
                 break
-        if not better or before - cost < 1e-4 * before:
+        if about is not None and not better:
+            about, first = None, 0
+        elif not better or before - cost < 1e-4 * before:
             break
     return Minimum(z, cost, r, normal, used)
 
