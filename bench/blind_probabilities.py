@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from app.blind.calibration import error, honest
-from bench.blind_pages import Check, Worth, count
+from app.blind.calibration import Claim, error, honest
+from bench.blind_pages import Check, Figure, Worth, count
 
 
 def pooled(checks: Sequence[Check]) -> list[Worth]:
@@ -21,9 +21,23 @@ def _sum(pieces: Sequence[Worth]) -> Worth:
     return Worth(pieces[0].span, said, count(sum(piece.true.hits for piece in pieces), of))
 
 
+def claims_of(pieces: Sequence[Worth]) -> list[Claim]:
+    """The causes named, each with the mean of what was said in its range, which is all that a page keeps."""
+    return [(piece.said, k < piece.true.hits) for piece in pieces for k in range(piece.true.of)]
+
+
+def calibration_error(pieces: Sequence[Worth]) -> Figure | None:
+    """Of the sum, and what chance alone makes of probabilities that are all true; None without a cause named."""
+    claims = claims_of(pieces)
+    if not claims:
+        return None
+    found, chance = error(claims), honest(claims)["mean"]
+    return Figure(f"{found:.3f}", found, interval=f"{len(claims)} causes, {chance:.3f} by chance")
+
+
 def words(pieces: Sequence[Worth]) -> Iterator[str]:
     """The calibration error of the sum beside that of probabilities that are all true."""
-    claims = [(piece.said, k < piece.true.hits) for piece in pieces for k in range(piece.true.of)]
+    claims = claims_of(pieces)
     chance = honest(claims)
     low, high = chance["range95"]
     yield f"Calibration error over {len(claims)} causes named: {error(claims):.3f}. Were every probability true,"

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from bench.blind_pages import Check, Figure, figure, tables
+from bench.blind_probabilities import calibration_error, pooled
 from bench.blind_summary import MEASURES, POOL, Measure, shown, table, together
 
 GOALS = tuple(measure for measure in MEASURES if measure.goal)
@@ -46,6 +47,7 @@ def newest_checks(checks: Sequence[Check]) -> Column:
     """Several checks added up, where counts can be: one draw may flatter."""
     sums = {m.name: shown(m, together(m, checks)) for m in GOALS}
     found = {name: one if one and one.of else None for name, one in sums.items()}
+    found["calibration error"] = calibration_error(pooled(checks))
     valves, anchor = sum(check.trials for check in checks), f"the-newest-{len(checks)}-together"
     head = f"[newest {len(checks)} checks](docs/blind.md#{anchor}) together: {valves} valves"
     return Column(head, f"the newest {len(checks)} checks", found)

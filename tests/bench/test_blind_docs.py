@@ -13,7 +13,7 @@ import pytest
 from app.interval import wilson
 from bench.blind_docs import HOUSE, committed, publish, renewed, with_table
 from bench.blind_pages import Check, Figure, Worth, count, figure, published, read
-from bench.blind_probabilities import pooled, words
+from bench.blind_probabilities import calibration_error, pooled, words
 from bench.blind_readme import newest_plant
 from bench.blind_summary import MEASURES, POOL
 from tests.app.blind.lines import some_lines
@@ -163,6 +163,14 @@ def test_probabilities_of_several_checks_are_added_up() -> None:
     assert (high.span, high.true, low.true) == ("0.9 to 0.95", count(13, 15), count(1, 2))
     assert high.said == pytest.approx((0.9 * 10 + 0.93 * 5) / 15)
     assert "over 17 causes named" in " ".join(words([high, low]))
+
+
+def test_the_error_of_several_checks_stands_beside_chance() -> None:
+    found = calibration_error([Worth("0.9 to 1", 0.95, count(19, 20)), Worth("0.5 to 0.7", 0.6, count(3, 10))])
+    assert found is not None
+    assert found.value == pytest.approx(10.0 / 30.0 * 0.3)
+    assert re.fullmatch(r"30 causes, 0\.0\d\d by chance", found.interval)
+    assert calibration_error([Worth("0.9 to 1", 0.95, count(0, 0))]) is None
 
 
 def test_a_published_check_is_not_written_again(house, tmp_path) -> None:
