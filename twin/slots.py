@@ -133,7 +133,8 @@ V_STEP_EASES = 63  # share of V_STEP that is gone in the end, and with which tim
 V_STEP_EASES_S = 64
 V_RINGS = 65  # 1: the plays are those of elastic rings, which stay stretched at a stop
 V_RELAX_TARGET = 66  # as V_RELAX, of a spring by which the target of the stem is held
-V_COUNT = 67
+V_STEP_TAKES_S = 67  # with which time constant V_STEP comes about its time, as a logistic curve [s]; 0: at once
+V_COUNT = 68
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -16,9 +16,12 @@ from tests.twin.judged import a_record
 from twin.case import Margin, make_case, widened
 from twin.catalog import effect
 from twin.choose.rules import DecisionRules
-from twin.choose.score import student_log_likelihood
+from twin.choose.score import make_yardstick, student_log_likelihood
 from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
+from twin.effect import Scales
+from twin.fit.fitting import Fit
+from twin.fit.space import make_space
 from twin.fit.trial import Trial
 from twin.noise.coarse import Coarse, coarse, flicker
 from twin.plant import Inserted, Plant
@@ -94,6 +97,26 @@ def test_errors_that_are_mostly_none_have_a_likelihood_of_a_size() -> None:
     sparse = np.where(np.arange(2000) % 40 == 0, np.random.default_rng(5).normal(size=2000), 0.0)
     twice = student_log_likelihood(2.0 * sparse)
     assert student_log_likelihood(sparse) - twice == pytest.approx(2000 * np.log(2.0), rel=1e-3)
+
+
+def test_readings_that_hold_what_is_predicted_vouch_for_no_scale() -> None:
+    """Ten thousand of them make a hypothesis no likelier that leaves 2 % less of what few others are off."""
+    rng = np.random.default_rng(7)
+    best = np.where(np.arange(10_000) % 40 == 0, rng.standard_normal(10_000), 0.0)
+    stick = make_yardstick(best, np.ones(10_000, dtype=bool))
+    assert stick.square == pytest.approx(1.0, rel=0.2)
+
+    def score(residuals: np.ndarray) -> float:
+        space = make_space(Plant(DesignModel()), (), (), Scales())
+        empty = np.zeros(0)
+        return stick.score(Fit(space, empty, float(np.mean(residuals**2)), 0.0, residuals, np.zeros((0, 0)), 1))
+
+    little_worse = 1.01 * best
+    assert 0.0 < score(best) - score(little_worse) < 5.0
+    assert student_log_likelihood(best) - student_log_likelihood(little_worse) > 50.0
+    more_off = np.where(np.arange(10_000) % 20 == 0, rng.standard_normal(10_000), 0.0)
+    assert score(best) - score(more_off) > 50.0
+    assert make_yardstick(rng.standard_normal(10_000), np.ones(10_000, dtype=bool)).square == 0.0
 
 
 def test_the_stem_is_heard_within_the_steps_of_its_reading() -> None:

@@ -140,6 +140,10 @@ SAME = {
     "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),
     "drift": (plant_with("friction_drift", "linear", 0.01), PlainValve(grow=lambda t: 0.01 * t)),
     "sudden": (plant_with("friction_drift", "sudden", 0.4, 0.5), PlainValve(grow=lambda t: 0.4 * (t >= 29.9))),
+    "gradual": (
+        plant_with("friction_drift", "gradual", 0.4, 30.0, 6.0),
+        PlainValve(grow=lambda t: 0.4 / (1.0 + np.exp((30.0 - t) / 6.0))),
+    ),
     "easing": (
         plant_with("friction_drift", "sudden_easing", 0.4, 0.5, 0.6, 30.0),
         PlainValve(grow=lambda t: 0.4 * (1.0 - 0.6 * (1.0 - np.exp(-(t - 29.95) / 30.0))) * (t >= 29.9)),

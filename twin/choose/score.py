@@ -25,6 +25,8 @@ _ORDER = 24
 _NU = 5.0
 _LEAST_SCALE = 0.02  # of the mean square
 _FURTHER_NUMBER = 0.1
+#: Share of residuals that are not 0, below which readings are intervals.
+_INTERVALS = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,13 +34,15 @@ class Yardstick:
     """What all hypotheses of a channel are measured with.
 
     `phi`: residual samples worth one independent one, `white_phi` the same after whitening with `filter` (FIR, leading
-    1), all taken from the best hypothesis.
+    1), all taken from the best hypothesis. `square`: where readings are intervals, which most predictions lie within,
+    what the best leaves in the mean of the others; 0 elsewhere.
     """
 
     rows: int
     phi: float = 1.0
     white_phi: float = 1.0
     filter: FloatArray = field(default_factory=lambda: np.ones(1))
+    square: float = 0.0
 
     def score(self, fit: Fit) -> float:
         """Tempered log-evidence of a fitted hypothesis; only differences mean anything.
@@ -46,14 +50,23 @@ class Yardstick:
         The likelihood at the optimum, the prior there, and for every unknown how much of its prior range the data rule
         out. A nuisance that had to move pays by its prior, one that is merely there pays too.
         """
-        white = lfilter(self.filter, [1.0], fit.residuals)[self.filter.size - 1 :]
-        likelihood = student_log_likelihood(white) / self.white_phi
+        likelihood = self._log_likelihood(fit.residuals) / self.white_phi
         return float(likelihood - 0.5 * fit.prior - 0.5 * _log_volume(fit, self.phi) + _log_odds(fit))
+
+    def _log_likelihood(self, residuals: FloatArray) -> float:
+        """With a scale of its own; of intervals with the same for all: a reading that holds what is predicted says no
+        more of the noise than that it is smaller, and thousands of them must not vouch for the scale of the others."""
+        if self.square > 0.0:
+            return float(-0.5 * (_NU + 1.0) * np.sum(np.log1p(np.square(residuals) / (_NU * self.square))))
+        return student_log_likelihood(lfilter(self.filter, [1.0], residuals)[self.filter.size - 1 :])
 
 
 def make_yardstick(best: FloatArray, use: np.ndarray) -> Yardstick:
     """The yardstick from the residuals of the best hypothesis."""
     phi = inflation(best, use)
+    beyond = best[use & (best != 0.0)]
+    if 0 < beyond.size < _INTERVALS * np.count_nonzero(use):
+        return Yardstick(int(np.count_nonzero(use)), phi, phi, square=float(np.mean(np.square(beyond))))
     fir = whitening_filter(best[use])
     white = lfilter(fir, [1.0], best)
     return Yardstick(int(np.count_nonzero(use)), phi, inflation(white, use), fir)

@@ -1,4 +1,4 @@
-"""The deadband changes with time: warm-up, wear, or one sudden change."""
+"""The deadband changes with time: warm-up, wear, or a change that comes at once or gradually."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 from math import exp
 
-from twin.effect import Coefficients, Effect, Form, Parameter
+from logs.recording import Recording
+from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import WHEN
 from twin.slots import (
     V_DRIFT_AMP,
@@ -16,6 +17,7 @@ from twin.slots import (
     V_STEP,
     V_STEP_EASES,
     V_STEP_EASES_S,
+    V_STEP_TAKES_S,
     V_STEP_TIME_S,
     V_WEAR,
 )
@@ -61,6 +63,18 @@ _WEAR = Parameter(
 _WHEN = replace(WHEN, starts=(0.2, 0.4, 0.6, 0.8), doc="when the change happens, fraction of the recording")
 
 
+_MIDDLE = replace(
+    _SETTLING,
+    name="middle",
+    lower=0.0,
+    upper=20_000.0,
+    starts=(40.0, 80.0),
+    doc="when half of the change has come",
+    neutral=0.0,
+)
+_TAKES = replace(
+    _SETTLING, name="takes", lower=2.0, starts=(20.0, 60.0), doc="time constant with which it comes, and settles"
+)
 _EASES = Parameter(
     name="eases",
     kind="fraction",
@@ -107,6 +121,17 @@ def _sudden(c: Coefficients, values: Sequence[float]) -> None:
         c.valve[V_STEP], c.valve[V_STEP_TIME_S] = values[0], when_s
 
 
+def _gradual(c: Coefficients, values: Sequence[float]) -> None:
+    c.valve[[V_STEP, V_STEP_TIME_S, V_STEP_TAKES_S]] = values[0], values[1] - c.since_s, values[2]
+
+
+def _middles(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
+    """Either way, soon and late in the longest of the recordings, quickly and slowly."""
+    size, lasts_s = 0.15 * scales.pressure, max(r.duration_s for r in records)
+    shares = [(middle, takes) for middle in (0.2, 0.4, 0.6, 0.8) for takes in (0.04, 0.12)]
+    return [(change, m * lasts_s, max(t * lasts_s, 2.0)) for m, t in shares for change in (size, -size)]
+
+
 def _sudden_easing(c: Coefficients, values: Sequence[float]) -> None:
     change, when, eases, easing_s = values
     before_s, all_s = c.course_s
@@ -145,6 +170,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband changes with time.",
     equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step; "
+    "gradual: + change / (1 + exp((middle - t) / takes)), as packing that swells; "
     "sudden_easing: a step of which a share goes again, as packing that is tightened relaxes; "
     "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own; "
     "on_stem: what it has grown by, s, does not widen the play but keeps the stem short: |w - x| less k s pulls it",
@@ -155,6 +181,7 @@ EFFECT = Effect(
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
+        Form("gradual", (_CHANGE, _MIDDLE, _TAKES), _gradual, _middles),
         Form("sudden_easing", (_CHANGE, _WHEN, _EASES, _EASING), _sudden_easing),
         Form("linear_on_stem", (_RATE,), _linear_on_stem),
         Form("warm_up_on_stem", (_CHANGE, _SETTLING), _warm_up_on_stem),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import expit
 
 from logs.recording import FloatArray
 from twin.slots import (
@@ -18,6 +19,7 @@ from twin.slots import (
     V_STEP,
     V_STEP_EASES,
     V_STEP_EASES_S,
+    V_STEP_TAKES_S,
     V_STEP_TIME_S,
     V_STIFFENS,
 )
@@ -41,7 +43,8 @@ def widening_at(t: FloatArray, c: FloatArray) -> FloatArray:
     if c[V_STEP] != 0.0:
         since = t - c[V_STEP_TIME_S]
         gone = c[V_STEP_EASES] * -np.expm1(-np.maximum(since, 0.0) / c[V_STEP_EASES_S])
-        widening += np.where(since >= 0.0, c[V_STEP] * (1.0 - gone), 0.0)
+        come = expit(since / c[V_STEP_TAKES_S]) if c[V_STEP_TAKES_S] > 0.0 else since >= 0.0
+        widening += c[V_STEP] * come * (1.0 - gone)
     if c[V_STIFFENS] != 0.0:  # the same friction is less of a stiffer spring
         widening += np.where(t >= c[V_BREAKS_S], c[V_HALF] * (1.0 / (1.0 + c[V_STIFFENS]) - 1.0), 0.0)
     return widening
