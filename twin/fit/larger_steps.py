@@ -27,19 +27,16 @@ _WORTHWHILE = 1.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Look:
-    """A `channel` in larger steps, and which `rows` of the one it was made of it has (int64, shape (rows,)).
-
-    `use`: which rows of that one count.
-    """
+    """A `channel` in larger steps, and which `rows` of the `whole` one it has (int64, shape (rows,))."""
 
     channel: Channel
     rows: Rows
-    use: np.ndarray
+    whole: Channel
 
     @property
     def larger(self) -> bool:
         """Whether its steps are larger at all."""
-        return self.rows.size < self.use.size or self.channel.use is not self.use
+        return self.channel is not self.whole
 
     def residuals(self, space: Space, z: FloatArray) -> FloatArray:
         """Of the channel in larger steps and the priors of `space`, at its unknowns `z`."""
@@ -49,8 +46,8 @@ class Look:
         """About the Jacobian of the residuals and the priors of `space` at `z`, as a fit has them."""
         residuals = partial(self.residuals, space)
         few = jacobian(residuals, z, residuals(z), space.steps, space.upper)
-        every, data = np.arange(self.use.size), few[: self.rows.size]
-        between = [np.where(self.use, np.interp(every, self.rows, column), 0.0) for column in data.T]
+        use, data = self.whole.use, few[: self.rows.size]
+        between = [np.where(use, np.interp(np.arange(use.size), self.rows, column), 0.0) for column in data.T]
         return np.vstack([np.array(between).T, few[self.rows.size :]])
 
 
@@ -62,13 +59,13 @@ def in_larger_steps(channel: Channel, larger: float = LARGER, least: int = LEAST
     steps = sum(trial.grid.n_fine - 1 for trial in channel.trials)
     factor = min(larger, steps / least)
     if factor < _WORTHWHILE:
-        return Look(channel, np.arange(channel.use.size), channel.use)
+        return Look(channel, np.arange(channel.use.size), channel)
     kept = [_kept(trial, factor) for trial in channel.trials]
     begins = np.cumsum([0, *(trial.recording.n for trial in channel.trials)])[:-1]
     rows = np.concatenate([begin + some for begin, some in zip(begins, kept, strict=True)])
     trials = tuple(_in_steps(trial, some, factor) for trial, some in zip(channel.trials, kept, strict=True))
     few = replace(channel, trials=trials, measured=channel.measured[rows], use=channel.use[rows])
-    return Look(few, rows, channel.use)
+    return Look(few, rows, channel)
 
 
 def _per_row(trial: Trial) -> float:
