@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from control.design import DesignModel
-from logs.recording import FloatArray, Recording
+from logs.recording import FloatArray
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.catalog import effect
+from twin.choose import search
+from twin.choose.screen import Prospect
+from twin.choose.search import Searcher
 from twin.effect import Scales
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import fit, starts_of
@@ -84,6 +87,20 @@ def test_a_fit_ends_where_it_does_without(channel: Channel, space: Space, monkey
     np.testing.assert_allclose(found.z, plain.z, atol=0.2 * np.max(plain.deviations() / np.abs(units(space))))
 
 
+def test_a_search_fits_with_its_look(channel: Channel, space: Space, monkeypatch: pytest.MonkeyPatch) -> None:
+    long = replace(
+        channel, trials=2 * channel.trials, measured=np.tile(channel.measured, 2), use=np.tile(channel.use, 2)
+    )
+    searcher = Searcher(long, space.base, Scales())
+    assert searcher.look.larger
+    used: list[object] = []
+    monkeypatch.setattr(search, "fit", lambda *given, **how: used.append(how["look"]) or fit(*given, rounds=1))
+    one = searcher._fit(space.causes, [])
+    searcher._fit_from(space.causes, one)
+    searcher._fit_prospect(Prospect(space.causes, space, one.z, 1.0, 1.0))
+    assert used == 3 * [searcher.look]
+
+
 def units(space: Space) -> FloatArray:
     return np.array([u.unit for u in space.unknowns])
 
@@ -113,7 +130,6 @@ def test_what_is_known_of_each_row_goes_with_it(channel: Channel) -> None:
     np.testing.assert_array_equal(few.vague, vague[look.rows])
     np.testing.assert_array_equal(few.recording.position, trial.recording.position[look.rows])
     np.testing.assert_array_equal(look.channel.measured, few.recording.position)
-    assert isinstance(few.recording, Recording)
     assert few.pressure is not None
     assert trial.pressure is not None
     np.testing.assert_allclose(few.pressure[few.grid.offsets], trial.pressure[trial.grid.offsets][look.rows])

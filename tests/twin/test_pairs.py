@@ -37,13 +37,14 @@ def channel_of(plant: Plant) -> Channel:
     return position_channel([trial], SIGMA)
 
 
-def test_the_pair_that_is_there_is_among_the_first_and_alone_fits() -> None:
+@pytest.mark.parametrize("larger", [1.0, 4.0])
+def test_the_pair_that_is_there_is_among_the_first_and_alone_fits(larger: float) -> None:
     bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
     drift = Inserted("friction_drift", effect("friction_drift").form("linear"), (4e-4,))
     channel = channel_of(Plant(DESIGN, (bow, drift)))
     base = Plant(DesignModel())
     alone = fit(channel, make_space(base, (), (), Scales()), [np.zeros(0)])
-    screen = make_screen(in_larger_steps(channel), base, alone)
+    screen = make_screen(in_larger_steps(channel, larger, least=100), base, alone)
     causes = [
         cause("lvdt_nonlinearity", "bow"),
         cause("friction_drift", "linear"),

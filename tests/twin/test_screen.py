@@ -26,7 +26,8 @@ def channel_with(*effects: Inserted) -> Channel:
     return position_channel([trial], SIGMA)
 
 
-def test_the_missing_cause_comes_first() -> None:
+@pytest.mark.parametrize("larger", [1.0, 4.0])
+def test_the_missing_cause_comes_first(larger: float) -> None:
     damping = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (0.15,))
     bow = Inserted("lvdt_nonlinearity", effect("lvdt_nonlinearity").form("bow"), (0.012,))
     channel = channel_with(damping, bow)
@@ -41,21 +42,38 @@ def test_the_missing_cause_comes_first() -> None:
         cause("friction_drift", "linear"),
         cause("sensor_lag", "first_order"),
     ]
-    screen = make_screen(in_larger_steps(channel), base, parent)
+    look = in_larger_steps(channel, larger, least=100)
+    assert look.larger == (larger > 1.0)
+    screen = make_screen(look, base, parent)
     found = prospects(screen, [(known, rival) for rival in rivals], [])
     assert found[0].causes[-1].name == "lvdt_nonlinearity"
     full = fit(channel, found[0].space, [found[0].start])
     assert full.mse < 1.2
     # the look promises about what the fit then gets, and that nothing else would
-    assert found[0].gain / channel.rows > 0.5 * (parent.mse - full.mse)
+    assert found[0].gain / look.channel.rows > 0.5 * (parent.mse - full.mse)
     assert found[-1].gain < 0.5 * found[0].gain
 
 
-def test_nothing_is_promised_where_nothing_is_missing() -> None:
+@pytest.mark.parametrize("larger", [1.0, 4.0])
+def test_what_is_to_be_explained_was_left_by_the_fit_and_not_by_larger_steps(larger: float) -> None:
+    channel = channel_with()
+    base = Plant(DesignModel())
+    look = in_larger_steps(channel, larger, least=100)
+    parent = fit(channel, make_space(base, (), (), Scales()), [np.zeros(0)])
+    screen = make_screen(look, base, parent)
+    left = np.concatenate([parent.residuals[look.rows], np.zeros(screen.z.size)])
+    np.testing.assert_allclose(screen.r, left - screen.basis @ (screen.basis.T @ left), atol=1e-9)
+    here = look.channel.residuals(screen.space.plant(screen.z))
+    assert not screen._way(here).any()  # where it stands nothing moves
+    assert (larger > 1.0) == bool(np.abs(here - left[: here.size]).max() > 1e-6)
+
+
+@pytest.mark.parametrize("larger", [1.0, 4.0])
+def test_nothing_is_promised_where_nothing_is_missing(larger: float) -> None:
     channel = channel_with()
     base = Plant(DesignModel())
     empty = make_space(base, (), (), Scales())
-    screen = make_screen(in_larger_steps(channel), base, fit(channel, empty, [np.zeros(0)]))
+    screen = make_screen(in_larger_steps(channel, larger, least=100), base, fit(channel, empty, [np.zeros(0)]))
     one = screen.prospect((cause("lvdt_drift", "linear"),), [])
     assert 0.0 <= one.gain < 20.0  # of some four thousand squares
 

@@ -91,7 +91,7 @@ def whitening_filter(residuals: FloatArray, order: int = _ORDER) -> FloatArray:
 def student_log_likelihood(values: FloatArray) -> float:
     """Log-likelihood of independent Student t errors with 5 degrees of freedom at their best scale."""
     square = np.square(values)
-    # where most errors are none (readings in coarse steps) the others still have a size
+    # few large errors among many small ones still have a size
     least = max(_LEAST_SCALE * float(np.mean(square)), 1e-12)
     scale = max(float(np.median(square)) / 0.528, least)
     for _ in range(25):
