@@ -57,6 +57,14 @@ def test_order_does_not_matter(inserted: list[Inserted]) -> None:
     np.testing.assert_allclose(chain(inserted)[1], chain(inserted[::-1])[1], atol=1e-9)
 
 
+@pytest.mark.parametrize("end", ["upper_stop_hit", "lower_stop_hit"])
+def test_a_stop_further_out_and_friction_pressed_against_it_add_up(end: str) -> None:
+    stop = Inserted("reduced_travel", effects()["reduced_travel"].form(end), (-0.01,))
+    held = Inserted("stiction", effects()["stiction"].form("held_stem_pressed"), (0.03, 3e-4))
+    one, other = (Plant(DESIGN, both).coefficients(100.0).valve for both in ((stop, held), (held, stop)))
+    np.testing.assert_allclose(one, other, atol=1e-12)
+
+
 FORMS = [(name, form) for name, one in effects().items() for form in one.forms]
 
 

@@ -61,12 +61,12 @@ def _lower(c: Coefficients, values: Sequence[float]) -> None:
 
 def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_HARD_HIGH] = (1.0 - values[0]) * c.design.travel
-    c.valve[V_HIGH] = max(c.valve[V_HIGH], c.valve[V_HARD_HIGH])
+    c.valve[V_HIGH] += max(-values[0], 0.0) * c.design.travel  # added, as what presses beyond the stop is
 
 
 def _lower_hit(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_HARD_LOW] = values[0] * c.design.travel
-    c.valve[V_LOW] = min(c.valve[V_LOW], c.valve[V_HARD_LOW])
+    c.valve[V_LOW] -= max(-values[0], 0.0) * c.design.travel
 
 
 def _seat(doc: str) -> tuple[Parameter, Parameter]:
