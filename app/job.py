@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
+_OFTEN = 0.05  # share of commands held to the limits of a bench from which on its operator is told
 SWITCH_S = 0.0003  # how long one thread may keep the others of this process waiting
 
 
@@ -90,7 +91,7 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
             outcome = supervised(loop, record, lambda: _play(session, loop, job))
         except BaseException:
             display.close()
-            _say_stopped(loop.rows, job.kind, record.folder)
+            _say_stopped(session, loop.rows, job.kind, record.folder)
             raise
     return Finished(record.folder, outcome)
 
@@ -111,11 +112,14 @@ def _warn(session: Session, sinks: Sequence[Sink]) -> None:
             sink.event(0.0, "warning", text)
 
 
-def _say_stopped(rows: int, kind: str, folder: Path) -> None:
+def _say_stopped(session: Session, rows: int, kind: str, folder: Path) -> None:
+    """What is left of it, where the valve is, and how to go on."""
     from app.resume import hint
     from hal.counted import counted
 
-    echo(f"stopped after {counted(rows, 'sample')}; record: {folder}\ngo on with: {hint(kind, folder)}", err=True)
+    where = "the valve is at its safe command" if session.bench.safe else "the valve did NOT confirm its safe command"
+    stopped = f"stopped after {counted(rows, 'sample')}; {where}; record: {folder}"
+    echo(f"{stopped}\ngo on with: {hint(kind, folder)}", err=True)
 
 
 def _play(session: Session, loop: Loop, job: Job) -> Outcome:
@@ -123,7 +127,24 @@ def _play(session: Session, loop: Loop, job: Job) -> Outcome:
     # Only now: making record and view has taken longer than a device's watchdog may be ready to wait.
     session.bench.arm(job.plan.period_s)
     with undisturbed():
-        return loop.run(job.plan, job.make_drive(begun), begun)
+        outcome = loop.run(job.plan, job.make_drive(begun), begun)
+    _say_held(session, loop, outcome.rows)
+    return outcome
+
+
+def _say_held(session: Session, loop: Loop, rows: int) -> None:
+    """That the bench has often not done what it was told: who reads the record has to know."""
+    from hal.counted import counted
+
+    held, slew = session.bench.clamped, session.profile.limits.slew_per_s
+    if held <= _OFTEN * rows:
+        return
+    limits = "its range" if slew is None else f"its range and its slew of {slew:g} {session.profile.command_unit}/s"
+    text = (
+        f"{held} of {counted(rows, 'command')} were held to the limits of the bench, {limits}: see command and target"
+    )
+    echo(f"warning: {text}", err=True)
+    loop.say("warning", text)
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from hal.errors import BadInput
 if TYPE_CHECKING:
     from logs.run import Run
 
-_BENCH = ("port", "profile", "physics", "seed", "effects", "plant", "real_time", "sealed")
+_BENCH = ("port", "profile", "physics", "seed", "effects", "plant", "real_time", "sealed", "twin")
 
 
 def stopped_run(text: str | Path, kind: str) -> tuple[Run, int]:

@@ -20,6 +20,7 @@ from hal.sample import Quality, Reading, Sample
 
 S = TypeVar("S")
 
+SLEW = "slew_psi_per_s"  # the setting of controllers that reckon with how fast a bench lets commands change
 FOLDER = Path(__file__).parent / "controllers"
 UNUSABLE = Quality.MISSING | Quality.SENTINEL | Quality.IMPLAUSIBLE
 

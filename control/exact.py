@@ -39,6 +39,11 @@ def decay(u: float) -> float:
     return left
 
 
+def sign(value: float) -> int:
+    """1 for what is above 0, else -1."""
+    return 1 if value > 0.0 else -1
+
+
 def lag(dt_s: float, tau_s: float) -> float:
     """The share of a first-order lag's way that it goes in a time; all of it without a lag."""
     return 1.0 - decay(dt_s / tau_s) if tau_s > 0.0 else 1.0

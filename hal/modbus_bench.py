@@ -10,6 +10,7 @@ from typing import Self
 
 from hal.assemble import Replies, assemble
 from hal.bench import BenchInfo
+from hal.bench_info import info_of
 from hal.clock import Clock
 from hal.connect import make_bus
 from hal.errors import BadInput, DeviceRefused, LostMotionError, PortFault, SafetyTrip, WireFault
@@ -22,7 +23,7 @@ from hal.reopen import Reopening
 from hal.reply import Bus, Reply
 from hal.sample import Quality, Sample
 from hal.second_master import SecondMaster
-from hal.tick import looking_period_s, min_period_s, plan_tick
+from hal.tick import looking_period_s, plan_tick
 from hal.watchdog import WatchdogControl, check_status
 
 _BUSY = (5, 6)  # exceptions that ask for patience; the next tick asks again
@@ -76,20 +77,7 @@ class ModbusBench:
 
     @property
     def info(self) -> BenchInfo:
-        profile, limits = self.profile, self.profile.limits
-        return BenchInfo(
-            name=profile.name,
-            port=self._port,
-            command_unit=profile.command_unit,
-            command_min=limits.command_min,
-            command_max=limits.command_max,
-            safe_command=profile.safe_command,
-            travel_in=profile.travel_in,
-            min_period_s=min_period_s(self._plan, profile),
-            has_pressure=profile.signals.pressure is not None,
-            identity=self._identity,
-            profile=profile.model_dump(mode="json", exclude_none=True),
-        )
+        return info_of(self.profile, self._port, self._identity)
 
     def __enter__(self) -> Self:
         self.bus.open()

@@ -13,6 +13,15 @@ if TYPE_CHECKING:
 
 _HIGHEST = 65535  # on the wire
 _COMMAND_UNITS = ("", "psi", "percent")
+#: What a record has under these names is no further channel's (`control/row.py`).
+RESERVED = frozenset(
+    (
+        *("time_s", "command_psi", "command_percent", "next_command_psi", "next_command_percent", "pressure_psi"),
+        *("position_in", "target_in", "lateness_s", "latency_s", "quality", "pressure_quality", "sequence", "step"),
+        *("command", "readback", "pressure", "position"),
+    )
+)
+_BESIDE = "twin_"  # columns of a model that runs beside the bench begin so
 
 
 def check_registers(profile: Profile) -> None:
@@ -79,3 +88,42 @@ def _check_within(profile: Profile, name: str, limit: float) -> None:
             f"limits.{name} {limit:g} {unit} is beyond signals.command, {low:g} to {high:g} {unit}; change the limit, "
             "or give raw and eng at the ends of the range"
         )
+
+
+def check_watchdogs(profile: Profile) -> None:
+    """A watchdog that is told less time than its register can say would be off, and nobody would know."""
+    for name, device in profile.devices.items():
+        watchdog = device.watchdog
+        if watchdog is None:
+            continue
+        place = f"devices.{name}.watchdog"
+        if watchdog.timeout is not None:
+            _check_carried(watchdog.timeout, watchdog.timeout_s, f"{place}.timeout_s {watchdog.timeout_s:g} s")
+            if watchdog.timeout_s < watchdog.timeout.resolution():
+                raise ValueError(
+                    f"{place}.timeout_s {watchdog.timeout_s:g} s is less than a count of its register, "
+                    f"{watchdog.timeout.resolution():g} s, which may switch the watchdog off; give at least that"
+                )
+        if watchdog.safe_value is not None:
+            _check_carried(watchdog.safe_value, profile.safe_command, f"safe_command {profile.safe_command:g}")
+
+
+def _check_carried(register: Register, value: float, what: str) -> None:
+    """Raises: `ValueError` where the register cannot hold a value, or its raw and eng end before that."""
+    try:
+        register.to_words(value, "ABCD")
+    except ValueError as error:
+        raise ValueError(f"{what} does not go into its register: {error}") from error
+    if register.raw is None or register.type == "f32":
+        return
+    low, high = sorted(register.value(raw) for raw in register.raw)
+    slack = 0.5 * register.resolution()
+    if not low - slack <= value <= high + slack:
+        raise ValueError(f"{what} is beyond its register, {low:g} to {high:g}; change it, or raw and eng")
+
+
+def check_channels(profile: Profile) -> None:
+    """Further channels have names of their own in a record."""
+    for name in profile.signals.aux:
+        if name in RESERVED or name.startswith(_BESIDE):
+            raise ValueError(f"signals.aux.{name}: a record has a column of that name already; choose another name")

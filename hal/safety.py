@@ -19,6 +19,7 @@ from hal.signals import Stopped, shielded
 
 UNTRUSTED = Quality.MISSING | Quality.SENTINEL | Quality.IMPLAUSIBLE
 _CONFIRM = 2  # readings in a row beyond a limit that are no longer taken for a spike
+_HELD = 1e-6  # from which difference on a command counts as held
 _FIRST_DT_S = 0.01  # the first command has no interval before it; its slew is measured over this one
 
 
@@ -45,6 +46,7 @@ class SafeBench:
     ) -> None:
         self.way_out: WayOut | None = None  # known once the bench has been left
         self.clamped = 0  # commands that were not sent as they were given
+        self.safe: bool | None = None  # whether the last `make_safe` was confirmed; None before the first
         self._bench = bench
         self._limits = limits
         self._clock = clock
@@ -73,7 +75,7 @@ class SafeBench:
         self._bench.__enter__()
         try:
             held = getattr(self._bench, "held_command", None)
-            self._command = self._bench.info.safe_command if held is None else held
+            self._command = self._bench.info.safe_command if held is None or not math.isfinite(held) else held
             self._good_s = self._clock.now_s()
         except BaseException as error:  # entered or not: nobody else would leave it
             self._bench.__exit__(type(error), error, error.__traceback__)
@@ -118,7 +120,7 @@ class SafeBench:
         """Sends what the limits leave of the command and judges what comes back."""
         if self._trip is not None:
             raise SafetyTrip(self._trip)
-        if self._latch is not None and self._latch.path.exists():  # `lostmotion vent --emergency` elsewhere
+        if self._latch is not None and self._latch.is_set():  # `lostmotion vent --emergency` elsewhere
             self._trip_now(f"emergency stop ({self._latch.engaged()})")
         if not math.isfinite(command_psi):
             self._trip_now(f"command {command_psi} is not a number; whatever made it is at fault")
@@ -130,7 +132,7 @@ class SafeBench:
         sample = self._bench.exchange(allowed)
         if self._trip is not None:  # the dead man's thread acted while we waited
             raise SafetyTrip(self._trip)
-        self.clamped += allowed != command_psi
+        self.clamped += abs(allowed - command_psi) > _HELD
         self._command, self._command_s = allowed, now_s
         self._judge(sample)
         return sample
@@ -139,7 +141,7 @@ class SafeBench:
         """As the bench does; once it is safe, nobody waits for commands before the next one comes."""
         self._rest()
         self._command = self.info.safe_command
-        safe = self._bench.make_safe(reason)
+        safe = self.safe = self._bench.make_safe(reason)
         disarm = getattr(self._bench, "disarm", None)
         if safe and disarm is not None:
             disarm()
@@ -159,13 +161,16 @@ class SafeBench:
                 self._latch.engage(reason)
 
     def _allowed(self, command: float) -> float:
+        """What range and slew leave of a command. A bench that was left out of range comes into it at once: the range
+        is what the bench bears, the slew what is kind to it."""
         limits = self._limits
         command = min(max(command, limits.command_min), limits.command_max)
         if limits.slew_per_s is None:
             return command
         dt_s = _FIRST_DT_S if self._command_s is None else self._clock.now_s() - self._command_s
         step = limits.slew_per_s * dt_s
-        return min(max(command, self._command - step), self._command + step)
+        before = min(max(self._command, limits.command_min), limits.command_max)
+        return min(max(command, before - step), before + step)
 
     def _judge(self, sample: Sample) -> None:
         quality = sample.position.quality | (sample.pressure.quality if sample.pressure else Quality.GOOD)

@@ -22,6 +22,9 @@ StopStatus = Literal["success", "abort", "fail"]
 Status = Literal["success", "abort", "fail", "crash", "running"]
 
 
+_NO_STOP = "no stop document: the program was killed, the power failed or the disk was full"
+
+
 @dataclass(frozen=True, slots=True)
 class Event:
     """Something that happened, or that somebody wrote down. `time_s` is bench time; None after the run has ended.
@@ -86,7 +89,7 @@ class Run:
     def reason(self) -> str:
         if self.stop is not None:
             return self.stop.reason
-        return "still running" if self.running else "no stop document: the program was killed or the power failed"
+        return "still running" if self.running else _NO_STOP
 
     @property
     def duration_s(self) -> float:
@@ -127,7 +130,7 @@ def read_run(path: Path) -> Run:
     rows = next(iter(columns.values())).size if columns else 0
     if stop is None and not running:
         left = f"{counted(rows, 'row')} can be read"
-        problems.insert(0, f"no stop document: the program was killed or the power failed; {left}")
+        problems.insert(0, f"{_NO_STOP}; {left}")
     if stop is not None and rows < stop.rows:
         problems.append(f"{SAMPLES} holds {rows} of the {stop.rows} rows that were written; its tail is damaged")
     return Run(path, start, columns, units, _read_events(path, problems), stop, tuple(problems), running)

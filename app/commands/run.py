@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from control.plan import Plan
 
 
+_OF_SLEW = 0.95  # of what the bench allows, that a controller reckons with: a tick may be a little early
+
+
 @dataclass(frozen=True, slots=True)
 class Wanted:
     """What is asked for, as words or as the record of a stopped run says it."""
@@ -165,13 +168,16 @@ def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
     from dataclasses import asdict
 
     from app.job import Job
-    from control.controller import make_controller
+    from control.controller import SLEW, make_controller, setting_defaults
     from control.drive import ControllerDrive
     from control.plan import check_bench
 
     info, plan = session.bench.info, wanted.plan
     check_bench(plan, "psi", info.command_min, info.command_max, info)
     limits: dict[str, float | str] = {"min_psi": info.command_min, "max_psi": info.command_max}
+    slew = session.profile.limits.slew_per_s
+    if slew is not None and SLEW in setting_defaults(wanted.controller):
+        limits[SLEW] = _OF_SLEW * slew
     made = make_controller(wanted.controller, wanted.design, **{**limits, **wanted.settings})
     about = {
         "controller": {"name": wanted.controller, "settings": dict(made.settings)},

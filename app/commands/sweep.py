@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from app.job import Job
     from app.session import Session
     from control.experiment import Experiment
+    from hal.profile import Profile
 
 
 @click.command(name="sweep", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
@@ -68,7 +69,7 @@ def command(
         save_experiment(experiment, write_to)
         click.echo(f"wrote {write_to}")
     elif dry_run:
-        _preview(experiment, first, as_json)
+        _preview(experiment, first, as_json, found)
     else:
         _sweep(experiment, first, continues, as_json, **{**bench, "profile": found})
 
@@ -188,11 +189,13 @@ def _announce(session: Session, experiment: Experiment, job: Job, as_json: bool)
     )
 
 
-def _preview(experiment: Experiment, first: int, as_json: bool) -> None:
-    from control.plan import plan_experiment
+def _preview(experiment: Experiment, first: int, as_json: bool, profile: Profile) -> None:
+    from control.plan import check_bench, plan_experiment
     from control.preview import duration_words, with_scale
+    from hal.bench_info import info_of
 
     plan = plan_experiment(experiment, first)
+    check_bench(plan, experiment.unit, *experiment.range, info_of(profile))
     schedule = experiment.commands()
     low, high = experiment.range
     samples = round(plan.duration_s / experiment.period_s)

@@ -8,12 +8,14 @@ from control.aims import parked_psi, stop_psi
 from control.brake_state import BrakeState
 from control.controller import Law, Seen
 from control.detour import FURTHER, TIMES, gains, hardly_known, over_psi
-from control.exact import lag
+from control.exact import sign
 from control.grip import Grip
+from control.lead import command_toward
 from control.observer import Inside
 from control.play_filter import Belief, PlayFilter
 from control.resting import Resting, in_vain, is_beyond, way_of_stroke
 
+Now = tuple[float, float]  # the command in force [psi], and how long a tick is [s]
 GIVEN_UP = 99  # turns after which a target is left alone
 LEFT = 1.5  # times as large as a new one a miss has to be that was left alone, to be pushed through the gap
 
@@ -33,6 +35,7 @@ class Brake(Law[BrakeState]):
     where the plate has let go; at most `strokes` per target, and none that takes longer than `stroke_s`; what was left
     alone for `while_s` stays, unless it is larger than a new miss may be. Each turn makes it more tolerant. Detours: an
     edge that is hardly known does not push; the plate goes beyond it and comes back by the other, `TIMES` per target.
+    `slew_psi_per_s`: as fast as the bench lets commands change.
     """
 
     tolerance_in: float = 0.0007
@@ -50,6 +53,7 @@ class Brake(Law[BrakeState]):
     stroke_s: float = 1.5
     free_psi: float = 0.33
     while_s: float = 6.0
+    slew_psi_per_s: float = 1e6
 
     def start(self, seen: Seen, target_in: float) -> BrakeState:
         return BrakeState(self._filter.start(seen), seen.position_in, seen.commanded_psi)
@@ -64,27 +68,31 @@ class Brake(Law[BrakeState]):
         late = state.late.read(self._filter.observer(soon), seen.position_in, seen.pressure_psi, dt_s)
         drive = self._begun(state, soon, fresh)
         if not drive and not fresh and self._worth_a_detour(state, soon):
-            drive, far_psi = _sign(target_in - soon.inside.w), over_psi(soon, target_in - soon.inside.w)
+            drive, far_psi = sign(target_in - soon.inside.w), over_psi(soon, target_in - soon.inside.w)
             state = replace(state, over_psi=far_psi, detours=state.detours + 1, turns=0, pushes=0)
         if drive and not state.drive:
             late = late.begun(drive, soon.inside, soon.edge_psi(soon.inside.x, drive), target_in, seen.pressure_psi)
         state = replace(state, late=late)
-        after = self._driving(state, soon, drive, fresh, dt_s) if drive else self._settling(state, soon)
+        after = (
+            self._driving(state, soon, drive, fresh, (seen.commanded_psi, dt_s))
+            if drive
+            else self._settling(state, soon)
+        )
         quiet_s = state.quiet_s + dt_s if after.aim_psi == before_psi else 0.0
         driven_s = state.driven_s + dt_s if after.drive else 0.0
         grip = after.grip.driven(after.drive, after.drive * (soon.inside.w - target_in))
         calm = after.turns > 2 and not (after.drive or after.sticks)  # beyond the aim, then, costs more than it gains
-        command_psi = self._command_psi(soon.inside, after.aim_psi, dt_s, calm)
+        command_psi = self._command_psi(soon.inside, after.aim_psi, seen.commanded_psi, dt_s, calm)
         return replace(after, quiet_s=quiet_s, driven_s=driven_s, grip=grip), command_psi
 
-    def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, dt_s: float) -> BrakeState:
+    def _driving(self, state: BrakeState, soon: Belief, drive: int, fresh: bool, now: Now) -> BrakeState:
         turns = state.turns + (0 if state.drive or fresh else 1)
         stroke = state.sticks and turns > 0
         from_in = state.from_in if state.drive else soon.inside.x
         gone_psi = drive * (soon.inside.p - soon.edge_psi(from_in, drive))
         free_psi = self.free_psi if stroke else state.over_psi if state.driven_s < self.stroke_s else 0.0
         held = free_psi > 0.0 and (not state.drive or gone_psi < free_psi)
-        way, (aim_psi, drive) = drive, self._driven(soon, state, drive, dt_s, held)
+        way, (aim_psi, drive) = drive, self._driven(soon, state, drive, now, held)
         after = replace(state, aim_psi=aim_psi, drive=drive, turns=turns, pushing=False, from_in=from_in)
         if state.over_psi and not drive:  # the other edge brings the plate back now: whether it sticks is watched anew
             after = replace(after, over_psi=0.0, grip=Grip(side=-way))
@@ -148,7 +156,7 @@ class Brake(Law[BrakeState]):
         if self._is_stop(target_in) or state.drive:
             return 0 if self._is_stop(target_in) else state.drive
         miss_in, off_in = target_in - soon.inside.x, target_in - soon.inside.w
-        way = _sign(miss_in)
+        way = sign(miss_in)
         if fresh:
             return way if abs(miss_in) > self.band_in else 0
         again_in = self.again_in * (1.0 if state.sticks else max(0.125 * state.turns, 1.0))
@@ -164,7 +172,7 @@ class Brake(Law[BrakeState]):
     def _wants_a_detour(self, state: BrakeState, soon: Belief) -> bool:
         """Whether a miss, if there is one, is not for a push through the gap: the first times for each target."""
         miss_in = state.target_in - soon.inside.w
-        not_now = state.sticks or state.late.known_s > 0.0 or self._touches(soon, _sign(miss_in))
+        not_now = state.sticks or state.late.known_s > 0.0 or self._touches(soon, sign(miss_in))
         return state.detours < TIMES and not not_now and hardly_known(soon, miss_in)
 
     def _worth_a_detour(self, state: BrakeState, soon: Belief) -> bool:
@@ -177,7 +185,7 @@ class Brake(Law[BrakeState]):
         enough_in = (1.5 if state.quiet_s < self.while_s else 2.2) * self.tolerance_in + 2.0 * soon.doubt_in
         return state.quiet_s > self.look_s and abs(off_in) > enough_in
 
-    def _driven(self, soon: Belief, state: BrakeState, drive: int, dt_s: float, stroke: bool) -> tuple[float, int]:
+    def _driven(self, soon: Belief, state: BrakeState, drive: int, now: Now, stroke: bool) -> tuple[float, int]:
         """The aim of the next tick [psi], and whether the drive goes on after it. It brakes a little short, because
         pushing on is cheaper than turning back; a valve that sticks cannot be pushed on."""
         x, target_in = soon.inside.x, state.target_in
@@ -186,7 +194,7 @@ class Brake(Law[BrakeState]):
         full_psi = soon.edge_psi(x + 1.1 * drive * self.design.rate_limit * self.design.tau_s, drive)
 
         def beyond_in(aim_psi: float) -> float:
-            return drive * (self._landing_in(soon, aim_psi, brake_psi, target_in, drive, dt_s) - target_in)
+            return drive * (self._landing_in(soon, aim_psi, brake_psi, target_in, drive, now) - target_in)
 
         if stroke:
             beyond_psi = FURTHER * state.over_psi or self.stroke_psi
@@ -204,22 +212,24 @@ class Brake(Law[BrakeState]):
         return 0.5 * (low_psi + high_psi), drive
 
     def _landing_in(
-        self, soon: Belief, aim_psi: float, brake_psi: float, target_in: float, drive: int, dt_s: float
+        self, soon: Belief, aim_psi: float, brake_psi: float, target_in: float, drive: int, now: Now
     ) -> float:
         """Where the stem is when the play output is back at the target, with one more tick at `aim_psi` [in]."""
-        observer = self._filter.observer(soon)
-        inside = observer.ahead(soon.inside, self._command_psi(soon.inside, aim_psi, dt_s), dt_s)
+        observer, (command_psi, dt_s) = self._filter.observer(soon), now
+        command_psi = self._command_psi(soon.inside, aim_psi, command_psi, dt_s)
+        inside = observer.ahead(soon.inside, command_psi, dt_s)
         for _ in range(12):
             if drive * (inside.w - target_in) <= 0.003:
                 break
-            inside = observer.ahead(inside, self._command_psi(inside, brake_psi, dt_s), dt_s)
+            command_psi = self._command_psi(inside, brake_psi, command_psi, dt_s)
+            inside = observer.ahead(inside, command_psi, dt_s)
         return inside.x
 
     def _pushed(self, state: BrakeState, soon: Belief) -> int:
         """The side of the edge that should push, 0 for none. Through the gap, what was left alone for a while after a
         detour has to be worth more than a new miss."""
         miss_in = state.target_in - soon.inside.w
-        side = _sign(miss_in)
+        side = sign(miss_in)
         left = LEFT if state.detours and state.quiet_s > self.while_s and not self._touches(soon, side) else 1.0
         return side if abs(miss_in) > left * self._allowed_in(soon, state.turns) else 0
 
@@ -232,18 +242,9 @@ class Brake(Law[BrakeState]):
             short_in = self.short_in + min(soon.edge_doubt_in(side), 0.01)
         return soon.edge_psi(target_in - side * short_in, side)
 
-    def _command_psi(self, inside: Inside, aim_psi: float, dt_s: float, calm: bool = False) -> float:
-        """The command that brings the pressure to the aim within a tick, if the supply can and nothing is `calm`."""
-        away_psi, tau_s = aim_psi - inside.p, self.design.ep_tau_s
-        lead = min(1.0 / lag(dt_s, tau_s), 3.5)
-        lead *= 0.96 if inside.line.ticks > 0.0 else 1.0  # a dead time is known to a part of a tick: not beyond the aim
-        return self.clamp(
-            inside.command_for(inside.p + (lead if abs(away_psi) > 0.05 and not calm else 1.0) * away_psi)
-        )
-
-
-def _sign(value: float) -> int:
-    return 1 if value > 0.0 else -1
+    def _command_psi(self, inside: Inside, aim_psi: float, from_psi: float, dt_s: float, calm: bool = False) -> float:
+        limits = (from_psi, self.slew_psi_per_s)
+        return self.clamp(command_toward(inside, aim_psi, limits, dt_s, self.design.ep_tau_s, calm=calm))
 
 
 CONTROLLER = Brake

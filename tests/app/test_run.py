@@ -13,14 +13,45 @@ import pytest
 from app.cli import run
 from app.console import RunDisplay
 from control.controller import controller_names, make_controller
-from control.design import DesignModel
+from control.design import DesignModel, save_design
 from control.loop import Progress
+from hal.profile import FOLDER
 from hal.sample import Reading, Sample
 from logs.run import read_run
 
 
 def close(*words: str) -> int:
     return run(["run", *words])
+
+
+def test_brake_reckons_with_the_slew_of_the_bench(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """All profiles of real modules allow 20 psi/s; told nothing of it, it took 15 to 23 s to settle."""
+    words = ["--controller", "brake", "--targets", "0.1,0.4,0.25,0.3", "--hold", "20", "--out", str(tmp_path / "r")]
+    profile = tmp_path / "mine.toml"
+    text = (FOLDER / "virtual.toml").read_text(encoding="utf-8")
+    profile.write_text(text.replace("slew_per_s = 2000.0", "slew_per_s = 20.0"), encoding="utf-8")
+    assert close(*words, "--profile", str(profile), "--json") == 0
+    said = capsys.readouterr()
+    targets = json.loads(said.out)["targets"]
+    assert all(abs(each["final_error_in"]) < 0.003 * 0.5625 for each in targets)
+    assert all(each["settled_s"] is not None and each["settled_s"] < 6.0 for each in targets)
+    assert "held to the limits" not in said.err
+    controller = read_run(tmp_path / "r").start["controller"]
+    assert controller["settings"]["slew_psi_per_s"] == 19.0  # type: ignore[index]
+
+
+def test_commands_that_the_bench_does_not_follow_are_said(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A controller knows nothing of the slew that a bench allows."""
+    profile = tmp_path / "slow.toml"
+    text = (FOLDER / "virtual.toml").read_text(encoding="utf-8")
+    profile.write_text(text.replace("slew_per_s = 2000.0", "slew_per_s = 2.0"), encoding="utf-8")
+    words = ["--controller", "overdrive", "--targets", "0.3", "--hold", "10", "--out", str(tmp_path / "r")]
+    assert close(*words, "--profile", str(profile)) == 0
+    assert "were held to the limits of the bench, its range and its slew of 2 psi/s" in capsys.readouterr().err
+    assert any("were held to the limits" in event.text for event in read_run(tmp_path / "r").events)
+    words[-1] = str(tmp_path / "fast")
+    assert close(*words) == 0
+    assert "held to the limits" not in capsys.readouterr().err
 
 
 def test_a_loop_is_closed_recorded_and_judged(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -43,12 +74,15 @@ def test_a_stopped_loop_is_gone_on_with_at_the_target_it_did_not_finish(
         if where.step == 1:
             os.kill(os.getpid(), signal.SIGINT)
 
-    first, rest = str(tmp_path / "a"), str(tmp_path / "b")
+    first, rest, model = str(tmp_path / "a"), str(tmp_path / "b"), str(tmp_path / "model.toml")
+    save_design(DesignModel(), Path(model))
     words = ["--controller", "pi", "--set", "ki=0.7", "--targets", "0.1,0.2,0.3", "--hold", "4", "--period", "0.2"]
     with monkeypatch.context() as patched:
         patched.setattr(RunDisplay, "show", interrupt)
-        assert close(*words, "--out", first, "--seed", "4", "--effect", "stiction=0.1") == 130
-    assert f"go on with: lostmotion run --resume {first} --seed 4 --effect stiction=0.1\n" in capsys.readouterr().err
+        assert close(*words, "--out", first, "--seed", "4", "--effect", "stiction=0.1", "--twin", model) == 130
+    said = capsys.readouterr().err
+    assert "; the valve is at its safe command; record: " in said
+    assert f"go on with: lostmotion run --resume {first} --twin {model} --seed 4 --effect stiction=0.1\n" in said
     stopped = read_run(tmp_path / "a")
     assert (stopped.status, stopped.rows) == ("abort", 21)
     assert close("--resume", first, "--dry-run") == 0

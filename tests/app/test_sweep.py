@@ -70,6 +70,11 @@ def test_a_dry_run_shows_and_touches_nothing(tmp_path: Path, capsys: pytest.Capt
     assert facts["samples"] == pytest.approx(facts["duration_s"] / facts["period_s"])
 
 
+def test_a_dry_run_knows_what_the_bench_allows(capsys: pytest.CaptureFixture[str]) -> None:
+    assert sweep("staircase", "--set", "high=25", "--dry-run") == 2
+    assert "bench 'virtual' allows 0 to 20 psi" in capsys.readouterr().err
+
+
 def test_a_file_is_written_and_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert sweep("staircase", *SHORT, "--write", str(tmp_path / "e.toml")) == 0
     assert load_experiment(tmp_path / "e.toml").duration_s == pytest.approx(14.0)

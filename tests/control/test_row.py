@@ -6,6 +6,7 @@ import math
 
 from control.row import columns_of, missing_sample, row_of
 from hal.clock import SteppedClock
+from hal.profile_checks import RESERVED
 from hal.sample import Quality, Reading, Sample
 from tests.control.fakes import ToyBench
 
@@ -19,6 +20,12 @@ def test_columns_carry_units_and_depend_on_the_bench() -> None:
     )
     assert "command_percent" in bare
     assert not {"pressure_psi", "pressure_quality", "target_in", "command_psi"} & set(bare)
+
+
+def test_no_further_channel_takes_the_name_of_a_column() -> None:
+    for unit in ("psi", "percent"):
+        info = ToyBench(SteppedClock(), unit=unit).info
+        assert set(columns_of(info, closed_loop=True, aux_units={})) <= RESERVED
 
 
 def test_every_key_of_a_row_is_a_declared_column() -> None:

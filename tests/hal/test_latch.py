@@ -27,6 +27,31 @@ def test_a_damaged_file_counts_as_engaged(tmp_path, content) -> None:
         Latch(path).check()
 
 
+def test_one_bench_with_two_names_is_stopped_by_either(monkeypatch, tmp_path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    device, link = tmp_path / "ttyS7", tmp_path / "by-id"
+    device.touch()
+    link.symlink_to(device)
+    running, stopped = Latch.of_port(str(link)), Latch.of_port(str(device))
+    assert not running.is_set()
+    stopped.engage("smoke")
+    assert running.is_set()
+    assert "smoke" in str(running.engaged())
+    link.unlink()
+    link.symlink_to(tmp_path / "ttyS8")  # plugged in anew: the bench behind this name has another device now
+    stopped.acknowledge()
+    running.engage("fire")
+    assert "fire" in str(Latch.of_port(str(link)).engaged())
+
+
+def test_a_host_by_name_and_by_number_is_one_bench(monkeypatch, tmp_path) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    Latch.of_port("tcp://127.0.0.1:5533").engage("smoke")
+    assert Latch.of_port("tcp://localhost:5533").is_set()
+    assert not Latch.of_port("tcp://localhost:5534").is_set()
+    assert not Latch.of_port("tcp://no.such.host.invalid:5533").is_set()
+
+
 def test_every_port_has_its_own(monkeypatch, tmp_path) -> None:
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     assert state_folder() == tmp_path / "lostmotion"

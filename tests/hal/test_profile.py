@@ -110,6 +110,27 @@ def test_every_bad_profile_gets_one_sentence_with_file_and_key(path, value, sent
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("path", "value", "sentence"),
+    [
+        ("devices.bench.watchdog.timeout_s", 0.04, r"timeout_s 0.04 s is less than a count of its register, 0.1 s"),
+        ("devices.bench.watchdog.timeout_s", 7000.0, r"timeout_s 7000 s does not go into its register"),
+        ("signals.aux.time_s", {"address": 900}, r"signals.aux.time_s: a record has a column of that name"),
+        ("signals.aux.twin_in", {"address": 900}, r"signals.aux.twin_in: a record has a column of that name"),
+    ],
+)
+def test_what_would_be_lost_without_a_word_is_refused(path, value, sentence) -> None:
+    with pytest.raises(BadInput, match=sentence):
+        parse_profile(changed(path, value), "mine.toml")
+
+
+def test_a_timeout_beyond_the_scale_of_its_register_is_refused() -> None:
+    content = changed("devices.bench.watchdog.timeout_s", 100.0)
+    content["devices"]["bench"]["watchdog"]["timeout"] |= {"raw": [0, 255], "eng": [0.0, 25.5]}
+    with pytest.raises(BadInput, match=r"timeout_s 100 s is beyond its register, 0 to 25.5"):
+        parse_profile(content, "mine.toml")
+
+
 def test_two_devices_need_to_be_told_apart() -> None:
     content = changed("devices.second", {"id": 1})
     for register in [*content["signals"]["aux"].values(), *_registers(content)]:

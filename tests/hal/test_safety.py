@@ -52,6 +52,16 @@ def test_slew_starts_from_what_the_device_holds() -> None:
         assert rig.tick(8.05).commanded_psi == pytest.approx(8.05)
 
 
+@pytest.mark.parametrize(("held", "first"), [(19.0, 14.9), (-1000.0, 1.1), (math.nan, 1.1)])
+def test_a_bench_that_was_left_out_of_range_comes_into_it_at_once(held: float, first: float) -> None:
+    """Its slew counts from the end of the range: with a wrong read-back no command is out of it either."""
+    rig = Rig(LIMITS.model_copy(update={"slew_per_s": 10.0}))
+    rig.fake.held_command = held  # type: ignore[attr-defined]
+    with rig.safe:
+        assert rig.tick(8.0).commanded_psi == pytest.approx(first)
+        assert rig.safe.clamped == 1
+
+
 @pytest.mark.parametrize("quality", [Quality.MISSING, Quality.SENTINEL, Quality.IMPLAUSIBLE])
 def test_the_limit_of_untrusted_readings(quality) -> None:
     rig = Rig(LIMITS.model_copy(update={"max_age_s": 99.0}), script=dict.fromkeys((1, 2, 3, 5, 6, 7, 8), quality))
