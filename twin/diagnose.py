@@ -27,7 +27,6 @@ from twin.fit.fitting import Fit
 from twin.gap import GapParts, retuning_pays
 from twin.hearing import Hearing
 from twin.held_noise import as_reported, noise_of_refreshed
-from twin.heldout import tied_note
 from twin.lateness import late_commands
 from twin.moved import moved_numbers
 from twin.next.propose import propose
@@ -132,7 +131,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     everything = replace(everything, decisions=result.decisions)
     known.judgement = judgement
     if judgement.verdict != "no_gap":
-        known.notes += tied_note([c.name for c in judgement.causes], case.base, parts.driven)
+        known.notes += hearing.notes(result, judgement, parts)
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
+from logs.recording import DataNote
+from twin.by_teeth import by_slips, slips_note
 from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.likelier import likelier
@@ -14,6 +16,7 @@ from twin.choose.weigh import Weights
 from twin.closure import rms
 from twin.fit.fitting import Fit
 from twin.gap import GapParts, fitted_without, heldout_parts, idle_cause, passes_for_noise
+from twin.heldout import tied_note
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.tolerance import forgiven, needless_number, within_tolerance
@@ -59,10 +62,18 @@ class Hearing:
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
     ) -> tuple[StageResult, Judgement, GapParts]:
         """Everything on unseen data, without the causes that are of no use there; of causes that are as likely the one
-        first without which most of the gap is left. `floor`: see `upheld`.
+        first without which most of the gap is left. `floor`: see `upheld`. Slips that no path follows are heard last.
         """
         result, judgement, parts = self._heard(result, judgement, progress, floor)
+        if (slips := by_slips(self.case, result, judgement.verdict == "unexplained")) is not None:
+            result, judgement = slips, self.judgement(slips)
+            parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, weightiest_first(judgement, parts, self.case.travel), parts
+
+    def notes(self, result: StageResult, judgement: Judgement, parts: GapParts) -> list[DataNote]:
+        """What has to be said of how it was judged."""
+        tied = tied_note([c.name for c in judgement.causes], self.case.base, parts.driven)
+        return tied + slips_note(result, self.case.scales.pressure_unit)
 
     def _heard(
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float

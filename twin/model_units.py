@@ -12,9 +12,7 @@ from twin.catalog import effect
 from twin.effect import Scales
 
 #: What an operator can do about percent beside another unit, where the record is a file.
-_OF_A_FILE = (
-    "give the range, as in --units '{quantity}=percent(0..{full:.4g} {unit})', or identify a model from the record"
-)
+_OF_A_FILE = "give the range of the signal, as in --units '{columns}', or identify a model from the record"
 
 #: ... and where it is the model that is in percent, whose range no option gives.
 _OF_PERCENT = "identify a model from such a recording"
@@ -54,12 +52,19 @@ def _factor(unit: str, wanted: str, quantity: Quantity, full: float, remedy: str
             f"the model has its {quantity} in [{unit}], which is not 0 where [{given.unit}] is; write it in that"
         )
     if PERCENT in (given.unit, needed.unit) and given.unit != needed.unit:
-        ours = _OF_PERCENT if given.unit == PERCENT else _OF_A_FILE.format(quantity=quantity, unit=unit, full=full)
+        ours = _OF_PERCENT if given.unit == PERCENT else _OF_A_FILE.format(columns=_ranged(quantity, unit, full))
         raise BadInput(
             f"the model has its {quantity} in [{unit}], the recording in [{wanted}], and nothing says what 100 % is; "
             + (remedy or ours)
         )
     return given.scale / needed.scale
+
+
+def _ranged(quantity: Quantity, unit: str, full: float) -> str:
+    """The units to give where a column is in percent; for a pressure the range that most converters have."""
+    if quantity == "position":
+        return f"position=percent(0..{full:.4g} {unit})"
+    return "command=percent(3..15 psi),pressure=percent(3..15 psi)"
 
 
 def _scaled(name: str, table: Mapping[str, float | str], scales: Scales) -> dict[str, float | str]:

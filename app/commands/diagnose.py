@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -232,6 +233,6 @@ def _print(outcome: Outcome, out: Path, as_json: bool) -> None:
         click.echo(f"This data cannot tell apart: {', '.join(names)}.")
     proposed = outcome.diagnosis.next_experiment
     if proposed is not None:
-        how = f" Run it: lostmotion sweep {out / proposed.file}" if proposed.file else ""
+        how = f" Run it: lostmotion sweep {shlex.quote(str(out / proposed.file))}" if proposed.file else ""
         click.echo(f"Next: {proposed.why}{how}")
     click.echo(f"Report: {out / 'report.html'}; view: {out / 'diagnosis.rrd'}; updated model: {out / 'model.toml'}")

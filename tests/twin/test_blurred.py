@@ -79,3 +79,13 @@ def test_false_readings_beside_a_stem_at_rest_are_no_motion() -> None:
     position = levels + dice.normal(0.0, 1e-3, rows) + np.where(false, dice.uniform(0.03, 0.1, rows), 0.0)
     record = Recording("staircase", 0.05 * np.arange(rows), levels, position)
     assert blurred_step([record], 1e-3) == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("code", [-9999.0, 1e6])
+def test_a_code_for_no_value_makes_no_step_of_all_readings(code: float) -> None:
+    """Every reading would be the same then, and what moves something else."""
+    smooth = read(0.12, step_in=0.0)
+    rows = np.random.default_rng(4).choice(smooth.n, 60, replace=False)
+    coded = replace(smooth, position=np.where(np.isin(np.arange(smooth.n), rows), code, smooth.position))
+    (same,), notes = on_their_steps([coded], 0.12 * STEP_IN)
+    assert same is coded and not notes

@@ -9,11 +9,9 @@ import pytest
 
 from logs.recording import Recording
 from tests.twin.toy_valve import Toy, record, staircase
-from twin.events.delay import delay
 from twin.events.dropouts import find_dropouts
 from twin.events.scan import Events, scan_events
 from twin.events.stale import chance_equal
-from twin.events.stickslip import stick_slip
 from twin.noise.lattice import lattice_step, step_doubt
 from twin.noise.model import estimate_noise
 
@@ -133,40 +131,6 @@ def test_false_readings_in_a_motion_are_found(step: float) -> None:
 def test_a_jump_that_stays_is_no_dropout() -> None:
     position = np.where(np.arange(500) < 250, 0.1, 0.3) + SIGMA * np.random.default_rng(0).standard_normal(500)
     assert not find_dropouts(position, SIGMA).rows.any()
-
-
-def test_stick_slip_on_slow_ramps() -> None:
-    slipping = record(Toy(breakaway=0.6, tau_s=0.6), RAMP, DT, 6, SIGMA)
-    evidence = scan(slipping).evidence["stiction"]
-    assert evidence.found
-    assert evidence.estimates["build_up"].value == pytest.approx(0.6, rel=0.1)
-    assert evidence.estimates["jump"].value == pytest.approx(0.6 * 0.19, rel=0.2)
-    smooth = record(Toy(tau_s=0.6), RAMP, DT, 6, SIGMA)
-    even = scan(smooth).evidence["stiction"]
-    assert not even.found
-    assert even.estimates["speed_spread"].value < 0.5 < evidence.estimates["speed_spread"].value
-    assert stick_slip(smooth.time_s, smooth.position, None, SIGMA).note.startswith("without measured pressure")
-    steps = record(Toy(), COMMAND, DT, 6, SIGMA)
-    assert "no slow ramp" in scan(steps).evidence["stiction"].note
-
-
-@pytest.mark.parametrize("true_s", [0.0, 0.1, 0.4])
-def test_delay_is_read_to_a_part_of_a_period(true_s: float) -> None:
-    recording = record(Toy(delay_s=true_s), COMMAND, DT, 7, SIGMA)
-    assert recording.pressure is not None
-    evidence = delay(recording.time_s, recording.command, recording.pressure, 0.02)
-    estimate = evidence.estimates["delay"]
-    assert estimate.value == pytest.approx(true_s, abs=0.01)
-    assert estimate.ci95[0] - 0.004 <= true_s <= estimate.ci95[1] + 0.004
-    assert evidence.found == (true_s > 0)
-    assert evidence.estimates["lag"].value == pytest.approx(0.3, abs=0.02)
-
-
-def test_delay_needs_a_moving_command() -> None:
-    n = 500
-    evidence = delay(np.arange(n) * DT, np.full(n, 8.0), 8.0 + 0.02 * np.random.default_rng(0).standard_normal(n), 0.02)
-    assert not evidence.found
-    assert "hardly moves" in evidence.note
 
 
 def test_lattice_of_converted_counts_and_of_none() -> None:

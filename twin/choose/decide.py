@@ -14,6 +14,7 @@ from twin.choose.findings import Findings
 from twin.choose.plainer import effects_of, instead_of, plainer
 from twin.choose.reform import bent_by, lays_open
 from twin.choose.rules import DecisionRules
+from twin.events.teeth import Slips
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
 
@@ -37,7 +38,7 @@ class Decision:
     """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before.
 
     `floor`: mean squared residual of the true model. `imitates`: not explained, because the design numbers had to move
-    further than anybody believes.
+    further than anybody believes. `slips`: what was accepted was recognised by its slips (`twin.by_teeth`).
     """
 
     findings: Findings
@@ -47,6 +48,7 @@ class Decision:
     rest: float
     floor: float = 1.0
     imitates: bool = False
+    slips: Slips | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

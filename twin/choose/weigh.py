@@ -122,9 +122,12 @@ def _comparable(decision: Decision) -> list[Fit]:
     none whose effect has no size, since it is its numbers that explain the gap.
 
     Where wrong numbers were accepted, effects are a rival only if they do without moving a number as far. Where nothing
-    else was, or an effect that spares the numbers, only if they do more than the numbers that they bring along.
+    else was, or an effect that spares the numbers, only if they do more than the numbers that they bring along. What
+    was recognised by its slips has none: nothing else makes them.
     """
     accepted = decision.accepted
+    if decision.slips is not None:
+        return [accepted]
     size = size_of(accepted)
     everything = (decision.findings.none, *decision.findings.fits)
     fits = [f for f in everything if size_of(f) <= size and f is not accepted and not hollow(f, decision.findings.phi)]

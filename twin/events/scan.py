@@ -9,12 +9,10 @@ import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
 from twin.diagnosis import Estimate
-from twin.events.delay import delay
 from twin.events.dropouts import find_dropouts
 from twin.events.evidence import Evidence, nothing
 from twin.events.on_change import on_change
 from twin.events.stale import stale_samples
-from twin.events.stickslip import stick_slip
 from twin.events.tails import Tail
 from twin.noise.lattice import lattice_step, missing_codes, rounding_error, step_doubt
 from twin.noise.model import NoiseModel
@@ -40,7 +38,7 @@ class Events:
 
 
 def scan_events(recording: Recording, noise: NoiseModel) -> Events:
-    """Tests one recording for stale samples, drop-outs, quantization (two kinds), stick-slip and dead time."""
+    """Tests one recording for stale samples, drop-outs and quantization (two kinds)."""
     position, pressure = recording.position, recording.pressure
     sigma = noise.position.sigma
     step = lattice_step(position)
@@ -55,17 +53,8 @@ def scan_events(recording: Recording, noise: NoiseModel) -> Events:
         ON_CHANGE: on_change(clean, step, recording.position_unit),
     }
     false_pressure = np.zeros(recording.n, dtype=bool)
-    if pressure is None or noise.pressure is None:
-        evidence["stiction"] = stick_slip(recording.time_s, clean, None, sigma)
-        evidence["dead_time"] = nothing("dead_time", "no pressure was measured")
-    else:
+    if pressure is not None and noise.pressure is not None:
         false_pressure = find_dropouts(pressure, noise.pressure.sigma).rows
-        true_pressure = np.where(false_pressure, np.nan, pressure)
-        evidence["stiction"] = stick_slip(
-            recording.time_s, clean, true_pressure, sigma, noise.position.correlation_samples
-        )
-        memory = noise.pressure.correlation_samples
-        evidence["dead_time"] = delay(recording.time_s, recording.command, true_pressure, noise.pressure.sigma, memory)
     return Events(evidence, drop.rows, false_pressure, drop.tail, share)
 
 

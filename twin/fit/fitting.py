@@ -128,6 +128,13 @@ def fit(
     return _finished(channel, space, best, weights, sum(m.evaluations for m in minima) + len(starts))
 
 
+def evaluated(channel: Channel, space: Space, z: FloatArray) -> Fit:
+    """The hypothesis as it is at `z`, without a fit: it knows no errors of its unknowns."""
+    residuals = channel.residuals(space.plant(z))
+    mse = float(residuals @ residuals) / max(channel.rows, 1)
+    return Fit(space, z, mse, float(np.sum((z / space.spreads) ** 2)), residuals, np.zeros((z.size, z.size)), 1)
+
+
 def _ranked(residuals: Residuals, starts: Sequence[FloatArray]) -> list[FloatArray]:
     """The starts, best first; a single one needs no look."""
     if len(starts) == 1:

@@ -43,7 +43,7 @@ def on_their_steps(recordings: Sequence[Recording], sigma: float) -> tuple[list[
 def blurred_step(recordings: Sequence[Recording], sigma: float) -> tuple[float, float]:
     """The step about which the positions of all recordings crowd, in their unit, and the place of one; (0, 0) where
     they do not."""
-    moving = np.concatenate([_in_motion(r, sigma) for r in recordings])
+    moving = _near_the_most(np.concatenate([_in_motion(r, sigma) for r in recordings]))
     span = float(np.ptp(moving)) if moving.size >= _ROWS else 0.0
     if sigma <= 0.0 or span < _STEPS * _LEAST * sigma:
         return 0.0, 0.0
@@ -57,6 +57,15 @@ def blurred_step(recordings: Sequence[Recording], sigma: float) -> tuple[float, 
     if min(abs(resultant(half, step)) for half in np.array_split(moving, 2)) <= _CROWDED:
         return 0.0, 0.0
     return step, step * float(np.angle(resultant(moving, step))) / (2.0 * np.pi)
+
+
+def _near_the_most(values: FloatArray) -> FloatArray:
+    """The values without those that no stem was at: a code for "no value" is a step of its own to all others."""
+    if not values.size:
+        return values
+    low, high = np.percentile(values, (5.0, 95.0))
+    near: FloatArray = values[(values > low - (high - low)) & (values < high + (high - low))]
+    return near
 
 
 def resultant(values: FloatArray, step: float) -> complex:
