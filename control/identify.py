@@ -13,7 +13,7 @@ import numpy as np
 
 from control.characterize import Settling, characterize
 from control.design import DesignModel
-from control.identify_checks import check_fit, check_found, check_motion, check_records
+from control.identify_checks import check_fit, check_found, check_motion, check_records, slow_note
 from control.identify_interval import Interval
 from control.identify_kept import Facts, settle_numbers
 from control.identify_pressure import PressureStage
@@ -138,7 +138,8 @@ def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[st
 def _say_zero(
     residual: FloatArray, tracks: Sequence[Track], fit: ValveFit, design: DesignModel, notes: list[str]
 ) -> None:
-    """What the design model cannot say: a reading that is off at the open stop, a stem that needs no pressure."""
+    """What no valve is: off at the open stop, closed without any pressure, on its way for ages."""
+    notes += slow_note(design)
     if design.a1 < 0.0 and not reach_of(tracks).away:
         notes.append(
             f"with a1 = {design.a1:.4g} {design.pressure_unit} the stem would close without any pressure: is the "

@@ -17,6 +17,7 @@ from logs.recording import FloatArray, Recording
 from logs.units import PERCENT
 
 LEAST_S = 10.0 * ROUGH_S  # a record that is over sooner has no time for a first guess
+SLOW_S = 600.0  # for a stroke; the slowest actuators of large valves take some minutes
 FALLS = -0.3  # correlation of position and pressure below which the position is the wrong way round
 ONE_TO_ONE = 2.0  # percent: a stem that goes where it is told within this is told positions
 _POSITIONER = (
@@ -98,6 +99,14 @@ def check_found(estimates: Sequence[Estimate], tracks: Sequence[Track], recordin
     )
 
 
+def slow_note(design: DesignModel) -> list[str]:
+    """What to say of a valve that takes longer for a stroke than any does."""
+    stroke_s = design.travel / design.rate_limit + design.tau_s + design.ep_tau_s
+    if stroke_s < SLOW_S:
+        return []
+    return [f"a stroke would take {stroke_s:.3g} s: is the time in another unit than s (--units time=ms)?"]
+
+
 def told_positions(design: DesignModel, recordings: Sequence[Recording]) -> bool:
     """Whether `design` was identified from commands that a positioner was told.
 
@@ -122,9 +131,10 @@ def _refuse_falling(tracks: Sequence[Track], recordings: Sequence[Recording]) ->
     position = np.concatenate([t.position[t.good] for t in tracks])
     pressure = np.concatenate([t.pressure[t.grid.first][t.good] for t in tracks])
     if float(np.corrcoef(pressure, position)[0, 1]) < FALLS:
+        unit, top = recordings[0].position_unit, max(float(np.nanmax(each.position)) for each in recordings)
         raise BadInput(
-            f"{_names(recordings)}: the position falls as the {_cause(recordings)} rises; 0 must be the open end, "
-            "so turn the position round"
+            f"{_names(recordings)}: the position falls as the {_cause(recordings)} rises; 0 must be the open end, so "
+            f"turn it round, as in --units 'position={unit}(0..T=T..0 {unit})' with the travel, some {top:.3g}, for T"
         )
 
 

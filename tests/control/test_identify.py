@@ -144,7 +144,10 @@ def test_separate_slopes() -> None:
 
 def test_what_cannot_be_identified_is_refused_in_words() -> None:
     plain = sweep(0.5)
-    with pytest.raises(BadInput, match="position falls as the pressure rises"):
+    with pytest.raises(
+        BadInput,
+        match=r"position falls as the pressure rises.*'position=in\(0..T=T..0 in\)' with the travel, some 0.56",
+    ):
         identify([replace(plain, position=0.5625 - plain.position)])
     with pytest.raises(BadInput, match="position falls as the command rises"):
         identify([replace(plain, pressure=None, position=0.5625 - plain.position)])

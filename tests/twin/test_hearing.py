@@ -35,6 +35,12 @@ from twin.verdict import Judgement
 DESIGN = DesignModel()
 
 
+@pytest.fixture(autouse=True)
+def none_slips(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The channels of these tests have no readings in which to look for slips."""
+    monkeypatch.setattr(twin.hearing, "by_slips", lambda *_: None)
+
+
 def accepted(channel: str, name: str, before: float, left: float = 1.0) -> Decision:
     findings = findings_of({(name,): (left, 1000.0)}, before)
     findings.channel.name, findings.channel.half, findings.channel.trials = channel, 0.0, ()
@@ -200,3 +206,25 @@ def test_what_unseen_data_leave_standing_comes_in_that_order(monkeypatch: pytest
     hearing: Any = Hearing(case, None, Sensing((), {}, 0.0), 0.0, Weights(), False)  # type: ignore[arg-type]
     told = hearing.held_out(None, heard[1], None, 1.0)[1]
     assert [c.name for c in told.causes] == ["creep", "parameter:ep_tau"]
+
+
+@pytest.mark.parametrize("verdict", ["unexplained", "effect"])
+def test_slips_are_heard_last_and_told_what_has_stood(monkeypatch: pytest.MonkeyPatch, verdict: Any) -> None:
+    case = make_case([a_record(Plant(DESIGN))], DESIGN)
+    parts = GapParts(np.ones(8), np.ones(8), np.ones(8), {}, {})
+    stood: Any = Judgement(verdict, (), (), ())
+    slipped: Any = StageResult(case, (accepted("position", "stiction", 30.0),), case.trials)
+    asked = []
+
+    def by_slips(_case: Any, result: Any, unexplained: bool) -> Any:
+        asked.append((result, unexplained))
+        return slipped
+
+    monkeypatch.setattr(Hearing, "_heard", lambda *_: ("heard", stood, parts))
+    monkeypatch.setattr(twin.hearing, "by_slips", by_slips)
+    monkeypatch.setattr(twin.hearing, "heldout_parts", lambda *_: parts)
+    hearing: Any = Hearing(case, None, Sensing((), {}, 0.0), 0.0, Weights(), False)  # type: ignore[arg-type]
+    result, judgement, _ = hearing.held_out(None, stood, None, 1.0)
+    assert asked == [("heard", verdict == "unexplained")]
+    assert result is slipped
+    assert [cause.name for cause in judgement.causes] == ["stiction"]
