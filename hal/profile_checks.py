@@ -79,11 +79,8 @@ def check_command(profile: Profile) -> None:
 def _check_within(profile: Profile, name: str, limit: float) -> None:
     """A converter's raw values end where its range ends; a float's two points only say how units are converted."""
     command, unit = profile.signals.command, profile.command_unit
-    if command.raw is None or command.type == "f32" or math.isnan(limit):
-        return
-    low, high = sorted(command.value(raw) for raw in command.raw)
-    slack = 0.5 * command.resolution()
-    if not low - slack <= limit <= high + slack:
+    if not math.isnan(limit) and (ends := _ends_before(command, limit)) is not None:
+        low, high = ends
         raise ValueError(
             f"limits.{name} {limit:g} {unit} is beyond signals.command, {low:g} to {high:g} {unit}; change the limit, "
             "or give raw and eng at the ends of the range"
@@ -114,12 +111,17 @@ def _check_carried(register: Register, value: float, what: str) -> None:
         register.to_words(value, "ABCD")
     except ValueError as error:
         raise ValueError(f"{what} does not go into its register: {error}") from error
+    if (ends := _ends_before(register, value)) is not None:
+        raise ValueError(f"{what} is beyond its register, {ends[0]:g} to {ends[1]:g}; change it, or raw and eng")
+
+
+def _ends_before(register: Register, value: float) -> tuple[float, float] | None:
+    """The range of a register whose raw and eng end before a value; None where they do not, or are no ends."""
     if register.raw is None or register.type == "f32":
-        return
+        return None
     low, high = sorted(register.value(raw) for raw in register.raw)
     slack = 0.5 * register.resolution()
-    if not low - slack <= value <= high + slack:
-        raise ValueError(f"{what} is beyond its register, {low:g} to {high:g}; change it, or raw and eng")
+    return None if low - slack <= value <= high + slack else (low, high)
 
 
 def check_channels(profile: Profile) -> None:
