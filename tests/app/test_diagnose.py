@@ -71,6 +71,7 @@ def test_other_units_and_no_pressure(healthy: Recording, tmp_path: Path) -> None
     assert "a deadband of 2.96 psi, be it play or friction, is in the design" in said(found)
 
 
+@pytest.mark.thorough
 def test_missing_values_doubled_rows_and_a_hole(healthy: Recording, tmp_path: Path) -> None:
     columns = {name: values.copy() for name, values in columns_of(healthy).items()}
     columns["position_in"][50:900:37] = np.nan
@@ -82,7 +83,8 @@ def test_missing_values_doubled_rows_and_a_hole(healthy: Recording, tmp_path: Pa
         assert words in said(found)
 
 
-@pytest.mark.parametrize("words", [pytest.param("after", marks=pytest.mark.thorough), "unknown"])
+@pytest.mark.thorough
+@pytest.mark.parametrize("words", ["after", "unknown"])
 def test_a_command_that_takes_effect_after_its_row(
     healthy: Recording, tmp_path: Path, words: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -194,6 +196,7 @@ def test_what_cannot_be_diagnosed_is_refused_in_one_sentence(
     assert not (tmp_path / "d" / "diagnosis.json").exists()
 
 
+@pytest.mark.thorough
 def test_the_hint_for_an_inverted_axis_works(healthy: Recording, tmp_path: Path) -> None:
     file = write(tmp_path / "x.csv", columns_of(_inverted(healthy)))
     found = diagnosed(tmp_path / "d", file, "--units", "position=in(0..0.5625=0.5625..0 in)")

@@ -56,6 +56,7 @@ def stop(*arguments: Any, **_: Any) -> None:
     raise KeyboardInterrupt
 
 
+@pytest.mark.thorough
 def test_nothing_of_an_earlier_diagnosis_stays(file: str, out: Path) -> None:
     assert run(["diagnose", file, "--out", str(out)]) == 0
     assert stale_in(out) == ["notes.txt"]

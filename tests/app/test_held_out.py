@@ -31,6 +31,7 @@ def test_a_number_that_moves_is_seen() -> None:
     assert shown() != block(drawn, named)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("scenario", ["dead_time", "stiction"])
 def test_what_is_stored_is_what_comes_out(scenario: str) -> None:
     """One trial each of the scenarios in which the last bit mattered most."""

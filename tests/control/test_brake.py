@@ -73,6 +73,7 @@ def test_it_notices_sticking_and_only_where_there_is_some() -> None:
     assert not hold(targets)[0].sticks
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("breakaway_psi", [0.15, 0.3])
 def test_pushing_in_vain_leaves_no_trace(breakaway_psi: float) -> None:
     """Once it knows that the valve sticks, it lands by strokes, and the compliance is still the valve's. Which pushes

@@ -74,6 +74,7 @@ def test_the_converters_share_is_taken_out(tau_s: float, ep_tau_s: float) -> Non
         assert together(tau_s, ep_tau_s) == pytest.approx(crossed_s, abs=3e-3)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("dwell_s", [12.0, 20.0, 40.0])
 def test_it_is_not_late_because_the_stem_creeps_after_a_converter_that_is_never_still(dwell_s: float) -> None:
     """Over eight seeds on the virtual valve: the mean within 0.6 %, and at most two intervals beside the truth."""

@@ -53,6 +53,7 @@ def test_a_lag_that_nothing_shows_is_kept_and_said() -> None:
     assert found["deadband"].value == pytest.approx(20.0, rel=0.01)
 
 
+@pytest.mark.thorough
 def test_a_wide_play_behind_sines_is_found() -> None:
     """From starts with no play or one of half the range alone the fit ends without one, 6 times the noise off."""
     recording, stranger, _, noise = drawn(9)

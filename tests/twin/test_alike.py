@@ -80,6 +80,7 @@ class _Level:
         return 0.0 if fit.names else -1000.0
 
 
+@pytest.mark.thorough
 def test_one_of_three_that_are_alike_is_named_though_none_is_likely() -> None:
     """None is a guess: one of them is sure, and the set says so."""
     decision = three_alike(wrong_zero(9.5)[0])

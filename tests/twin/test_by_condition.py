@@ -89,6 +89,7 @@ def test_repeats_are_one_condition_and_one_condition_gives_no_answer() -> None:
     assert apart(unsearched([once, again, replace(other, command=17.0 - other.command[::-1])])) is not None
 
 
+@pytest.mark.thorough
 def test_any_number_of_repeats_is_one_condition() -> None:
     short = a_record(Plant(DesignModel())).slice(0, 300)
     noise = np.random.default_rng(4).normal(0.0, FLOOR_IN, (45, short.n))

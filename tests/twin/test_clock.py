@@ -36,6 +36,7 @@ def taken(t: FloatArray, period_s: float, phase_s: float) -> FloatArray:
     return np.asarray(phase_s + period_s * np.floor((t - phase_s) / period_s + 1e-9))
 
 
+@pytest.mark.thorough
 @settings(max_examples=40, deadline=None)
 @given(st.integers(2, 9), st.floats(0.0, 1.0), st.floats(0.0, 0.4), st.integers(0, 2**32 - 1))
 def test_it_knows_when_each_reading_was_taken(slower: int, phase: float, jitter: float, seed: int) -> None:

@@ -29,6 +29,7 @@ def test_live_and_with_other_steps_as_at_once(friction: str) -> None:
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("friction", FRICTIONS)
 @pytest.mark.parametrize("throttled", [(2.0, 0.0), (0.0, 5.0)])
 def test_an_orifice_like_small_steps_of_its_law(friction: str, throttled: tuple[float, float]) -> None:

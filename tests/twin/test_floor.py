@@ -68,9 +68,8 @@ def without(result: StageResult, name: str) -> StageResult:
     return replace(result, decisions=tuple(found))
 
 
-@pytest.mark.parametrize(
-    ("share", "verdict"), [pytest.param(0.99, "parameter", marks=pytest.mark.thorough), (0.97, "unexplained")]
-)
+@pytest.mark.thorough
+@pytest.mark.parametrize(("share", "verdict"), [(0.99, "parameter"), (0.97, "unexplained")])
 def test_a_rest_behind_a_converter_that_explains_the_gap_needs_no_cause(share: float, verdict: str) -> None:
     result, _ = two_causes()
     sensing: Any = SimpleNamespace(accepted={})

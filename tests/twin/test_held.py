@@ -103,6 +103,7 @@ def test_the_updated_model_holds_the_readings_of_another_record() -> None:
     assert np.std(fresh.position - after) < 0.1 * np.std(fresh.position - before)
 
 
+@pytest.mark.thorough
 def test_a_look_at_part_of_the_rows_knows_when_they_were_fresh(stale: Recording) -> None:
     parts = [replace(stale, time_s=stale.time_s + k * (stale.time_s[-1] + 0.2)) for k in range(12)]
     time_s, command, position = (np.concatenate([getattr(p, n) for p in parts]) for n in _SIGNALS)

@@ -56,6 +56,7 @@ def lag_alone() -> tuple[Decision, Scales]:
     return replace(before, accepted=lag), result.case.scales
 
 
+@pytest.mark.thorough
 def test_a_number_that_nobody_is_sure_of_is_not_accused() -> None:
     decision, scales = lag_alone()
     assert leaning(decision, scales, DecisionRules()).names == ("sensor_lag", "parameter:compliance")

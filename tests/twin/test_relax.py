@@ -15,6 +15,7 @@ def relaxing(friction: str, share: float, tail_s: float) -> Plant:
     return plant(friction, "creep", "spring_tail", (share, tail_s))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("friction", FRICTIONS)
 @pytest.mark.parametrize("relax", [(0.1, 20.0), (0.4, 8.0)])
 def test_like_small_steps_of_its_law(friction: str, relax: tuple[float, float]) -> None:

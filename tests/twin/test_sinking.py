@@ -44,6 +44,7 @@ def test_a_core_has_sunk_before_the_record_begins(form: str, shift: float) -> No
     assert reading_at(c, stem_at(c, 0.3)) == pytest.approx(0.3)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("form", ["sinks", "sinks_back"])
 def test_slack_that_is_taken_up_is_a_lost_motion(form: str) -> None:
     trial, _ = trial_of(Plant(DESIGN, (loose(form, 0.03, 12.0),)), np.append(staircase(), staircase(7)))

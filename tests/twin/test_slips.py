@@ -46,6 +46,7 @@ def test_an_effect_is_not_put_down_to_the_numbers() -> None:
     assert len(judgement.causes) == 1 and judgement.causes[0].name in {"sensor_lag", "additional_lag"}
 
 
+@pytest.mark.thorough
 def test_a_design_without_a_gap_is_not_taken_apart() -> None:
     result, _ = judged(a_record(Plant(DesignModel())), DesignModel())
     assert all(len(f.names) < 3 for d in result.decisions for f in d.findings.fits)

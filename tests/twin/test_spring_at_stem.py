@@ -15,6 +15,7 @@ def uneven(friction: str, asymmetry: float) -> Plant:
     return plant(friction, "spring_asymmetry", "at_stem", (asymmetry,))
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("friction", FRICTIONS)
 @pytest.mark.parametrize("asymmetry", [0.2, -0.15])
 def test_like_small_steps_of_its_law(friction: str, asymmetry: float) -> None:

@@ -119,6 +119,7 @@ def test_places_that_hold_the_stem_both_ways_are_no_friction() -> None:
     assert slipping(*judged(detented(3), detented(4))) is None
 
 
+@pytest.mark.thorough
 def test_a_stem_that_sticks_by_chance_is_recognised_by_its_slips() -> None:
     records = [record(Random(0.6, 0.3, seed), RAMPS, DT, seed, SIGMA, 0.006) for seed in (5, 6)]
     case, decision = judged(*records)
