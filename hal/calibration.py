@@ -7,22 +7,24 @@ from collections.abc import Sequence
 from datetime import date
 from typing import Annotated, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
+
+from hal.register import AS_LIST, Part, Span
+
+Day = Annotated[date, Field(strict=False)]  # a day in quotes is as clear as one without
 
 
-class Calibration(BaseModel):
+class Calibration(Part):
     """A table of (signal, position [in]), straight between its points and, beyond its ends, on along the last segment.
 
     Two points are the usual two-point calibration. Both columns must rise or fall strictly.
     """
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
-
     id: str
-    made: date
-    expires: date | None = None
+    made: Day
+    expires: Day | None = None
     instrument: str = ""
-    points: Annotated[tuple[tuple[float, float], ...], Field(min_length=2)]
+    points: Annotated[tuple[Span, ...], Field(min_length=2), AS_LIST]
 
     @model_validator(mode="after")
     def _check(self) -> Self:

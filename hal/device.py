@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from hal.register import Part, Register, Verified
+from hal.register import AS_LIST, NO_BOOL, Part, Register, Verified
 from hal.words import WordOrder
 
 OBJECT_NAMES = {
@@ -25,7 +25,7 @@ class Identity(Part):
 
     objects: dict[str, str] = Field(default_factory=dict)
     address: Annotated[int, Field(ge=0)] | None = None  # as the manual prints it
-    expect: tuple[Annotated[int, Field(ge=0, le=65535)], ...] = ()
+    expect: Annotated[tuple[Annotated[int, Field(ge=0, le=65535)], ...], AS_LIST] = ()
     source: str = ""
     verified: Verified = "unverified"
 
@@ -75,7 +75,7 @@ class Device(Part):
     fc23: bool = False
     read_fc: Literal[3, 4] = 3
     write_fc: Literal[6, 16] = 16
-    address_base: Literal[0, 1] = 0
+    address_base: Annotated[Literal[0, 1], NO_BOOL] = 0
     word_order: WordOrder = "ABCD"
     turnaround_ms: Annotated[float, Field(ge=0, le=1000)] = 5.0
     max_read: Annotated[int, Field(ge=1, le=125)] = 125

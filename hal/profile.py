@@ -13,7 +13,7 @@ from hal.device import Device
 from hal.errors import BadInput
 from hal.profile_checks import check_channels, check_command, check_registers, check_watchdogs
 from hal.profile_words import not_finite, sentence
-from hal.register import Part, Register, Verified
+from hal.register import NO_BOOL, Part, Register, Verified
 
 FOLDER = Path(__file__).parent / "profiles"
 
@@ -23,7 +23,7 @@ class Serial(Part):
 
     baud: Annotated[int, Field(ge=300, le=4_000_000)] = 19200
     parity: Literal["N", "E", "O"] = "N"
-    stop_bits: Literal[1, 2] = 1
+    stop_bits: Annotated[Literal[1, 2], NO_BOOL] = 1
     pacing: Literal["spec", "none"] = "spec"
     backend: Literal["native", "pymodbus"] = "native"
 
@@ -85,7 +85,7 @@ class Signals(Part):
 class Profile(Part):
     """Everything the HAL knows of one bench. `safe_direction`: at the end the valve is vented, or held where it is."""
 
-    name: str
+    name: Annotated[str, Field(pattern=r"\S")]
     title: str = ""
     verified: Verified = "unverified"
     source: str = ""

@@ -9,6 +9,7 @@ from typing import Any
 _HINTS = {
     "extra_forbidden": "unknown key; remove it or correct its spelling",
     "missing": "missing; add it",
+    "string_pattern_mismatch": "empty; give it a text",
 }
 _KINDS = (  # the beginning of the type of an error, and what should have been there
     ("float", "a number"),
@@ -71,6 +72,13 @@ def _what(error: Mapping[str, Any]) -> str:
         return f"{given!r} must be {context['expected']}"
     wanted = next((words for start, words in _KINDS if kind.startswith(start)), None)
     if wanted is not None:
-        shown = "what is given" if isinstance(given, (Mapping, list, tuple)) else repr(given)
-        return f"{shown} is not {wanted}"
+        point = isinstance(given, float) and given.is_integer() and kind.startswith("int")
+        return f"{_shown(given)} is not {wanted}" + (f"; write {given:.0f}" if point else "")
     return str(error["msg"]).removeprefix("Value error, ")
+
+
+def _shown(given: object) -> str:
+    """A value as TOML writes it."""
+    if isinstance(given, (Mapping, list, tuple)):
+        return "what is given"
+    return str(given).lower() if isinstance(given, bool) else repr(given)

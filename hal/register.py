@@ -4,20 +4,33 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from hal.words import RANGE, NumberType, WordOrder, decode, encode, word_count
 
 Verified = Literal["hardware", "manual", "unverified"]
-Span = tuple[float, float]
+AS_LIST = Field(strict=False)  # a file has lists where we have tuples; what is in them is still looked at strictly
+Span = Annotated[tuple[float, float], AS_LIST]
+
+
+def _no_bool(value: Any) -> Any:
+    if isinstance(value, bool):
+        raise ValueError(f"{str(value).lower()} is not a whole number")
+    return value
+
+
+NO_BOOL = BeforeValidator(_no_bool)  # for a choice of numbers: there Python takes true for 1
 
 
 class Part(BaseModel):
-    """Base of everything in a profile: fixed once read, and a key that nobody knows is an error."""
+    """Base of everything in a profile: fixed once read, and a key that nobody knows is an error.
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    Strict: "38400" and true are no numbers, whatever could be made of them.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 
 class Transmitter(Part):
@@ -50,7 +63,7 @@ class Register(Part):
     eng: Span | None = None
     transmitter: Transmitter | None = None
     unit: str = ""
-    sentinels: tuple[int, ...] = ()
+    sentinels: Annotated[tuple[int, ...], AS_LIST] = ()
     plausible: Span | None = None
     source: str = ""
     verified: Verified = "unverified"
