@@ -49,6 +49,7 @@ def _keys(profile: Profile, place: str, register: Register) -> Iterator[tuple[st
 def _check_register(profile: Profile, place: str, register: Register) -> None:
     if register.device not in profile.devices and (register.device or len(profile.devices) > 1):
         raise ValueError(f"{place}.device '{register.device}' is not one of {', '.join(profile.devices)}")
+    _check_table(place, register)
     base = profile.device_of(register).address_base
     if register.address < base:
         raise ValueError(f"{place}.address 0 does not exist on a device with address_base = 1")
@@ -58,6 +59,16 @@ def _check_register(profile: Profile, place: str, register: Register) -> None:
             f"{place}.address {register.address} does not exist: with address_base = {base} a {register.type} ends at "
             f"{highest} at the latest"
         )
+
+
+def _check_table(place: str, register: Register) -> None:
+    """An input register cannot be written, and one bit is no measurement. A watchdog's status may be read only."""
+    signal = place.startswith("signals.")
+    only_read = place.endswith(".watchdog.status") or (signal and place != "signals.command")
+    if register.table == "input" and not only_read:
+        raise ValueError(f"{place}.table is 'input', which nobody can write to; give a register in table = \"holding\"")
+    if register.table == "coil" and signal:
+        raise ValueError(f"{place}.table is 'coil', which holds one bit; a signal needs a register, holding or input")
 
 
 def check_command(profile: Profile) -> None:

@@ -111,6 +111,10 @@ def test_names_and_paths(tmp_path) -> None:
             65536,
             "signals.sequence.address 65536 does not exist: with address_base = 0 a u16",
         ),
+        ("signals.command.table", "input", "signals.command.table is 'input', which nobody can write to; give"),
+        ("signals.command.table", "coil", "signals.command.table is 'coil', which holds one bit"),
+        ("signals.aux.supply_psi.table", "coil", "signals.aux.supply_psi.table is 'coil', which holds one bit"),
+        ("devices.bench.watchdog.timeout.table", "input", "devices.bench.watchdog.timeout.table is 'input', which"),
         ("signals.pressure.address", 65535, "a f32 ends at 65534 at the latest"),
     ],
 )
