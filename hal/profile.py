@@ -11,7 +11,14 @@ from pydantic import Field, ValidationError, model_validator
 from hal.calibration import Calibration
 from hal.device import Device
 from hal.errors import BadInput
-from hal.profile_checks import check_channels, check_command, check_registers, check_watchdogs
+from hal.profile_checks import (
+    check_channels,
+    check_command,
+    check_pressure,
+    check_registers,
+    check_travel,
+    check_watchdogs,
+)
 from hal.profile_words import not_finite, sentence
 from hal.register import NO_BOOL, Part, Register, Verified
 
@@ -112,6 +119,8 @@ class Profile(Part):
         if self.signals.pressure is not None and self.signals.pressure.unit != "psi":
             raise ValueError(f"signals.pressure.unit is '{self.signals.pressure.unit}': it must come out in psi")
         check_command(self)
+        check_pressure(self)
+        check_travel(self)
         check_watchdogs(self)
         check_channels(self)
         return self

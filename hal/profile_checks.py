@@ -7,11 +7,13 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from hal.register import Register
+from hal.words import RANGE
 
 if TYPE_CHECKING:
     from hal.profile import Profile
 
 _HIGHEST = 65535  # on the wire
+_FAR = 10.0  # so many times what is there to see: a travel in mm is 25 times that in inches
 _COMMAND_UNITS = ("", "psi", "percent")
 #: What a record has under these names is no further channel's (`control/row.py`).
 RESERVED = frozenset(
@@ -133,6 +135,40 @@ def _ends_before(register: Register, value: float) -> tuple[float, float] | None
     low, high = sorted(register.value(raw) for raw in register.raw)
     slack = 0.5 * register.resolution()
     return None if low - slack <= value <= high + slack else (low, high)
+
+
+def check_pressure(profile: Profile) -> None:
+    """Where the command is a pressure, a bench at its safe command must be below the limit of pressure."""
+    most, safe = profile.limits.pressure_max_psi, profile.safe_command
+    if most is not None and profile.command_unit == "psi" and most < safe:
+        raise ValueError(
+            f"limits.pressure_max_psi {most:g} is below safe_command {safe:g} psi, at which a run would be stopped; "
+            "raise it, or lower that"
+        )
+
+
+def check_travel(profile: Profile) -> None:
+    """Nothing sees or allows the tenth part of the travel: it is in another unit."""
+    for place, low, high in _seen(profile):
+        times = profile.travel_in / abs(high - low)
+        if times > _FAR:
+            raise ValueError(
+                f"travel_in {profile.travel_in:g} is {times:.3g} times the range of {place}, {min(low, high):g} to "
+                f"{max(low, high):g} in; give it in inches, or correct that range"
+            )
+
+
+def _seen(profile: Profile) -> Iterator[tuple[str, float, float]]:
+    """What a profile says of positions [in], and where. Two points of a register are no ends: its type has those."""
+    limits, register = profile.limits, profile.signals.position
+    if limits.position_min_in is not None and limits.position_max_in is not None:
+        yield "limits.position_min_in to position_max_in", limits.position_min_in, limits.position_max_in
+    if profile.calibration is not None:
+        points = profile.calibration.points
+        yield "calibration.points", points[0][1], points[-1][1]
+    if register.type != "f32":
+        low, high = (profile.position_in(register.value(raw)) for raw in RANGE[register.type])
+        yield "signals.position", low, high
 
 
 def check_channels(profile: Profile) -> None:
