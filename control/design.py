@@ -16,6 +16,7 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from pydantic_core import ErrorDetails
 
 from hal.errors import BadInput
+from hal.toml_file import read_toml
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +106,7 @@ def load_design(path: Path) -> DesignModel:
     Raises: `BadInput` naming the file, the key and what is wrong with it.
     """
     try:
-        data = _File.model_validate(tomllib.loads(path.read_text(encoding="utf-8")))
+        data = _File.model_validate(read_toml(path))
     except OSError as error:
         raise BadInput(f"{path}: the design model cannot be read ({error.strerror}); check the path") from error
     except tomllib.TOMLDecodeError as error:

@@ -10,6 +10,7 @@ from pathlib import Path
 from control.experiment import Experiment
 from control.experiment_catalog import experiment_kinds, make_experiment
 from hal.errors import BadInput
+from hal.toml_file import read_toml
 
 
 def to_plain(experiment: Experiment) -> dict[str, object]:
@@ -41,10 +42,10 @@ def load_experiment(path: Path) -> Experiment:
     Raises: `BadInput` naming the file, the key, its value and its limit.
     """
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = read_toml(path)
     except OSError as error:
         raise BadInput(f"{path}: the experiment cannot be read ({error.strerror}); check the path") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise BadInput(f"{path}: not a TOML file ({error}); see docs/experiments.md for the format") from error
     return from_plain(content, str(path))
 

@@ -15,6 +15,7 @@ from pydantic import ValidationError
 from hal.calibration import Calibration
 from hal.errors import BadInput
 from hal.profile import load_profile
+from hal.toml_file import toml_text
 
 Pair = tuple[float, float]
 
@@ -120,7 +121,7 @@ def write_profile(source: Path, target: Path, calibration: Calibration) -> None:
     import tomlkit
 
     check_new(target)
-    document = tomlkit.parse(source.read_text(encoding="utf-8"))
+    document = tomlkit.parse(toml_text(source))
     table = tomlkit.table()
     for key, value in calibration.model_dump(exclude_none=True).items():
         table[key] = [[round(s, 6), round(p, 6)] for s, p in value] if key == "points" else value

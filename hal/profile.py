@@ -21,6 +21,7 @@ from hal.profile_checks import (
 )
 from hal.profile_words import not_finite, sentence
 from hal.register import NO_BOOL, Part, Register, Verified
+from hal.toml_file import read_toml
 
 FOLDER = Path(__file__).parent / "profiles"
 
@@ -197,10 +198,10 @@ def load_profile(path_or_name: str | Path) -> Profile:
                 f"there is no profile '{text}'; there are {', '.join(profile_names())}, or give a .toml file"
             )
     try:
-        content = tomllib.loads(path.read_text(encoding="utf-8"))
+        content = read_toml(path)
     except OSError as error:
         raise BadInput(f"profile {path} cannot be read: {error.strerror}; give a name or a .toml file") from error
-    except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except tomllib.TOMLDecodeError as error:
         raise BadInput(f"profile {path} is not valid TOML: {error}") from error
     return parse_profile(content, str(path))
 
