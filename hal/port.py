@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlsplit
@@ -20,10 +21,15 @@ class PortName:
 
 
 def parse_port(text: str) -> PortName:
-    """Raises: `BadInput` for a URL that is none of the forms above."""
+    """Raises: `BadInput` for a URL that is none of the forms above, or HOST:PORT without its kind."""
     if "://" not in text:
         if not text.strip():
             raise BadInput("the port is empty; `lostmotion ports` lists the serial ports")
+        if re.fullmatch(r"[^/\s]+:\d+", text) and not Path(text).exists():
+            raise BadInput(
+                f"port '{text}' is no serial port of this machine; a TCP port is written tcp://{text}, "
+                f"or rtu+tcp://{text} for RTU frames"
+            )
         return PortName("serial", text)
     parts = urlsplit(text)
     if parts.scheme not in ("rtu+tcp", "tcp"):

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from hal.errors import BadInput
@@ -26,6 +28,20 @@ def test_good_names(text, found) -> None:
 def test_bad_names_get_a_sentence(text) -> None:
     with pytest.raises(BadInput, match="port"):
         parse_port(text)
+
+
+@pytest.mark.parametrize("text", ["127.0.0.1:5533", "gateway:502", "[::1]:4001"])
+def test_a_host_without_its_kind_gets_told_how_it_is_written(text) -> None:
+    with pytest.raises(BadInput, match=re.escape(f"a TCP port is written tcp://{text}, or rtu+tcp://{text}")):
+        parse_port(text)
+    assert parse_port(f"tcp://{text}").kind == "tcp"
+
+
+def test_a_link_whose_name_ends_like_that_is_a_serial_port(tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "usb-0:2").touch()
+    assert parse_port("usb-0:2").kind == "serial"
+    assert parse_port("/dev/serial/by-path/usb-0:2").kind == "serial"
 
 
 def test_the_list_is_plain_values() -> None:
