@@ -53,7 +53,14 @@ def _send(profile: Profile, port: str, emergency: bool) -> bool:
             with ModbusBench(profile, port, clock, read_only=True) as bench:
                 return bench.emergency_stop() if emergency else bench.vent()
         except PortFault as error:
-            if "is busy" not in str(error) or clock.now_s() >= until_s:
+            if "is busy" not in str(error):
+                raise
+            if not emergency:
+                reach = (
+                    "or add --emergency, which reaches through: a run of lostmotion that has it then vents the valve"
+                )
+                raise PortFault(f"{error}, {reach}") from error
+            if clock.now_s() >= until_s:
                 raise
             if not waiting:
                 click.echo("the program that has the port open will vent the valve at its next tick; waiting", err=True)

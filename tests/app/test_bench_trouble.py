@@ -119,6 +119,18 @@ def test_a_busy_port(device: VirtualDevice, capsys: pytest.CaptureFixture[str]) 
     assert said == f"lostmotion: port {device.port} is busy: another program has it open; close that one first\n"
 
 
+def test_vent_at_a_busy_port_says_what_reaches_through(
+    device: VirtualDevice, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with ModbusBench(load_profile("virtual"), device.port, RealClock(), read_only=True):
+        assert run(["vent", "--port", device.port]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith(
+        f"lostmotion: port {device.port} is busy: another program has it open; close that one first, "
+    )
+    assert "or add --emergency, which reaches through" in said
+
+
 def test_the_wrong_unit_id(device: VirtualDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "p.toml").write_text(PROFILE.replace("\nid = 1\n", "\nid = 9\n"), encoding="utf-8")
     assert run(["sweep", "hold", "--port", device.port, "--profile", str(tmp_path / "p.toml")]) == 1
