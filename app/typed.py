@@ -9,7 +9,10 @@ from collections.abc import Iterator
 
 
 def typed_lines() -> Iterator[str | None]:
-    """Lines of standard input as they come; None each time nothing has been typed. Ends with the input."""
+    """Lines of standard input as they come; None each time nothing has been typed. Ends with the input.
+
+    A last line need not end with a newline.
+    """
     stdin, text = sys.stdin.fileno(), ""
     while True:
         line, newline, rest = text.partition("\n")
@@ -19,6 +22,8 @@ def typed_lines() -> Iterator[str | None]:
         elif select.select([stdin], [], [], 0.0)[0]:
             data = os.read(stdin, 4096)
             if not data:
+                if text.strip():
+                    yield text.strip()
                 return
             text += data.decode("utf-8", "replace")
         else:

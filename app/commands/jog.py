@@ -26,7 +26,8 @@ def command(
     """Move the valve by hand: STEPs like +0.5 -1 +0.25 (relative) or =8 (absolute), in psi, or percent.
 
     Without STEPs they are read from standard input, one a line, until an empty line or `q`. A step that would leave the
-    limits ends at the limit. At the end the valve goes to its safe command.
+    limits ends at the limit. At the end the valve goes to its safe command. A line that is no step is said and passed
+    over at a terminal; from a pipe or a file it ends the session with exit code 2.
     """
     from app.hold import hold
     from app.session import open_bench
@@ -79,7 +80,12 @@ def _parse(step: str) -> tuple[bool, float]:
 
 
 def _typed() -> Iterator[tuple[bool, float] | None]:
-    """Steps typed one a line; None while nothing is typed, so that the bench is served and its watchdog content."""
+    """Steps typed one a line; None while nothing is typed, so that the bench is served and its watchdog content.
+
+    Raises: `BadInput` for a line that is no step where nobody types who could correct it.
+    """
+    import sys
+
     from app.typed import typed_lines
     from hal.errors import BadInput
 
@@ -92,4 +98,6 @@ def _typed() -> Iterator[tuple[bool, float] | None]:
             try:
                 yield _parse(line)
             except BadInput as error:
+                if not sys.stdin.isatty():  # what follows was meant to start from where that step would have led
+                    raise
                 click.echo(str(error), err=True)
