@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from logs.writer import RunWriter
 
 
-WATCHDOG_SHARE = 0.6  # of a device's timeout that a tick may take: one lost reply must not vent the valve
 _OFTEN = 0.05  # share of commands held to the limits of a bench from which on its operator is told
 SWITCH_S = 0.0003  # how long one thread may keep the others of this process waiting
 
@@ -62,13 +61,14 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     valve has been sent to its safe command and the record is closed.
     """
     from app.console import KeyboardNotes, RunDisplay
+    from app.dry_run import check_watchdogs
     from control.loop import Hooks, Loop
     from control.supervise import supervised
     from hal.signals import stop_signals
     from logs.writer import RunWriter
     from sim_device.sealed import write as write_commitment
 
-    _check_watchdogs(session, job.plan.period_s)
+    check_watchdogs(session.profile, job.plan.period_s)
     columns = _columns(session, job)
     with ExitStack() as stack:
         stop = stack.enter_context(stop_signals())
@@ -165,17 +165,6 @@ def undisturbed() -> Iterator[None]:
     finally:
         gc.unfreeze()
         sys.setswitchinterval(before_s)
-
-
-def _check_watchdogs(session: Session, period_s: float) -> None:
-    from hal.errors import BadInput
-
-    for name, device in session.profile.devices.items():
-        if device.watchdog is not None and period_s > WATCHDOG_SHARE * device.watchdog.timeout_s:
-            raise BadInput(
-                f"a period of {period_s:g} s is too long: the watchdog of device '{name}' vents the valve after "
-                f"{device.watchdog.timeout_s:g} s of silence; at most {WATCHDOG_SHARE:g} of that is safe"
-            )
 
 
 def _start(session: Session, job: Job) -> dict[str, object]:

@@ -70,6 +70,8 @@ def plan_targets(targets_in: Sequence[float], hold_s: float, period_s: float, tr
             raise BadInput(f"target {number} is {target_in:g} in; the valve travels from 0 to {travel_in:g} in")
     if not (math.isfinite(hold_s) and hold_s > 0.0):
         raise BadInput(f"--hold {hold_s:g} s must be above 0")
+    if not (math.isfinite(period_s) and period_s > 0.0):
+        raise BadInput(f"--period {period_s:g} s must be above 0, and finite")
     if not 0 <= first < len(targets_in):
         raise BadInput(f"there are targets 0 to {len(targets_in) - 1}, there is no target {first}")
     return Plan(period_s, tuple(Step(target, target, 0.0, hold_s) for target in targets_in[first:]), first=first)

@@ -23,8 +23,11 @@ if TYPE_CHECKING:
 
     from app.job import Job
     from app.session import Session
+    from control.controller import Controller
     from control.design import DesignModel
     from control.plan import Plan
+    from hal.bench import BenchInfo
+    from hal.profile import Profile
 
 
 _OF_SLEW = 0.95  # of what the bench allows, that a controller reckons with: a tick may be a little early
@@ -90,7 +93,7 @@ def command(
         wanted = Wanted(controller, parse_settings(settings), model, plan, places)
     _check(wanted)
     if dry_run:
-        _preview(wanted, as_json)
+        _preview(wanted, as_json, found, bench["port"])
     else:
         _run(wanted, as_json, **{**bench, "profile": found})
 
@@ -164,21 +167,26 @@ def _numbers(text: str) -> list[float]:
     return found
 
 
+def _fitted(wanted: Wanted, info: BenchInfo, slew: float | None) -> Controller[Any]:
+    """The controller within the limits of a bench that can do what is wanted. Raises: `BadInput`."""
+    from control.controller import SLEW, make_controller, setting_defaults
+    from control.plan import check_bench
+
+    check_bench(wanted.plan, "psi", info.command_min, info.command_max, info)
+    limits: dict[str, float | str] = {"min_psi": info.command_min, "max_psi": info.command_max}
+    if slew is not None and SLEW in setting_defaults(wanted.controller):
+        limits[SLEW] = _OF_SLEW * slew
+    return make_controller(wanted.controller, wanted.design, **{**limits, **wanted.settings})
+
+
 def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
     from dataclasses import asdict
 
     from app.job import Job
-    from control.controller import SLEW, make_controller, setting_defaults
     from control.drive import ControllerDrive
-    from control.plan import check_bench
 
-    info, plan = session.bench.info, wanted.plan
-    check_bench(plan, "psi", info.command_min, info.command_max, info)
-    limits: dict[str, float | str] = {"min_psi": info.command_min, "max_psi": info.command_max}
-    slew = session.profile.limits.slew_per_s
-    if slew is not None and SLEW in setting_defaults(wanted.controller):
-        limits[SLEW] = _OF_SLEW * slew
-    made = make_controller(wanted.controller, wanted.design, **{**limits, **wanted.settings})
+    plan = wanted.plan
+    made = _fitted(wanted, session.bench.info, session.profile.limits.slew_per_s)
     about = {
         "controller": {"name": wanted.controller, "settings": dict(made.settings)},
         "design": asdict(wanted.design),
@@ -201,10 +209,13 @@ def _announce(session: Session, wanted: Wanted, as_json: bool) -> None:
     )
 
 
-def _preview(wanted: Wanted, as_json: bool) -> None:
+def _preview(wanted: Wanted, as_json: bool, profile: Profile, port: str | None) -> None:
+    from app.dry_run import bench_unopened, check_watchdogs
     from control.preview import duration_words
 
     plan, controller = wanted.plan, wanted.controller
+    _fitted(wanted, bench_unopened(profile, port), profile.limits.slew_per_s)
+    check_watchdogs(profile, plan.period_s)
     targets = [step.end for step in plan.steps]
     if as_json:
         click.echo(json.dumps({"controller": controller, "targets_in": targets, "duration_s": plan.duration_s}))

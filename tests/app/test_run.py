@@ -153,6 +153,23 @@ def test_a_dry_run_touches_nothing(tmp_path: Path, capsys: pytest.CaptureFixture
 @pytest.mark.parametrize(
     ("words", "sentence"),
     [
+        (["--period", "0.0001"], "0.0001 s is too short: the wire of bench 'virtual' needs 0.0005556 s for a tick"),
+        (["--period", "0.005", "--port", "x"], "0.005 s is too short: the wire of bench 'virtual' needs 0.008302 s"),
+        (["--period", "3"], "3 s is too long: the watchdog of device 'bench' vents the valve after 2 s of silence"),
+        (["--period", "nan"], "--period nan s must be above 0, and finite"),
+        (["--profile", "positioner"], "takes percent"),
+    ],
+)
+def test_a_dry_run_is_refused_as_the_run_would_be(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert close("--controller", "p", "--targets", "0.1", "--dry-run", *words) == 2
+    assert sentence in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
         (["--controller", "magic", "--targets", "0.1"], "'magic' does not exist"),
         (["--controller", "p"], "give a controller and targets"),
         (["--controller", "p", "--targets", "0.1,x"], "'x' is not a position"),

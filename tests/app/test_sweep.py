@@ -71,6 +71,11 @@ def test_a_dry_run_shows_and_touches_nothing(tmp_path: Path, capsys: pytest.Capt
 
 
 def test_a_dry_run_knows_what_the_bench_allows(capsys: pytest.CaptureFixture[str]) -> None:
+    assert sweep("staircase", "--period", "0.005", "--dry-run") == 0, "the virtual valve has no bits on a wire"
+    assert sweep("staircase", "--period", "0.005", "--dry-run", "--port", "x") == 2
+    assert "0.005 s is too short" in capsys.readouterr().err
+    assert sweep("staircase", "--period", "3", "--dry-run") == 2
+    assert "3 s is too long: the watchdog of device 'bench'" in capsys.readouterr().err
     assert sweep("staircase", "--set", "high=25", "--dry-run") == 2
     assert "bench 'virtual' allows 0 to 20 psi" in capsys.readouterr().err
 
