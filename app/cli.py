@@ -6,6 +6,7 @@ a `click.Command`; the first line of its docstring is its short help. Nothing el
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import traceback
@@ -79,16 +80,26 @@ def run(argv: Sequence[str]) -> int:
         return 2
     except click.ClickException as error:
         return _fail(_usage(error), 2)
-    except (KeyboardInterrupt, click.Abort):
-        click.echo("lostmotion: interrupted", err=True)
+    except (KeyboardInterrupt, click.Abort) as stop:
+        click.echo(f"lostmotion: interrupted{_noted(stop)}", err=True)
         return 130
     except LostMotionError as error:
-        return _fail(str(error), error.exit_code)
+        return _fail(f"{error}{_noted(error)}", error.exit_code)
     except BrokenPipeError:
         sys.stderr.close()
         return 1
     except Exception as error:
-        return _fail(f"{type(error).__name__}: {error}; this is a defect, --debug shows where", 1)
+        if isinstance(error, OSError) and error.errno == errno.ENOSPC:
+            return _fail(
+                f"nothing more can be written ({error.strerror}); free the disk and run again{_noted(error)}", 1
+            )
+        return _fail(f"{type(error).__name__}: {error}; this is a defect, --debug shows where{_noted(error)}", 1)
+
+
+def _noted(error: BaseException) -> str:
+    """What somebody on the way up had to add: where the valve is. Click puts an exception of its own over Ctrl-C."""
+    told = error.__cause__ if isinstance(error, click.Abort) else error
+    return "".join(f"; {note}" for note in getattr(told, "__notes__", ()))
 
 
 def _usage(error: click.ClickException) -> str:

@@ -70,7 +70,7 @@ def _ask_moved(profile: str, port: str, commands: str) -> list[Pair]:
                 break
             pairs.append(pair)
             click.echo(f"  signal {pair[0]:.5f} at {pair[1]:g} in")
-    click.echo("the valve is at its safe command")
+    click.echo(session.bench.where)
     return pairs
 
 

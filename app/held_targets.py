@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from control.tracking import TargetResult
 
 
-def report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_json: bool) -> None:
+def report(results: Sequence[TargetResult], folder: Path, travel_in: float, where: str, as_json: bool) -> None:
     """Prints one line a target, or JSON."""
     from dataclasses import asdict
 
@@ -44,4 +44,4 @@ def report(results: Sequence[TargetResult], folder: Path, travel_in: float, as_j
             "never" if r.settled_s is None else f"{r.settled_s:.1f}",
         )
     console().print(table)
-    click.echo(f"the valve is at its safe command; record: {folder}")
+    click.echo(f"{where}; record: {folder}")

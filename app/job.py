@@ -91,7 +91,7 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
             outcome = supervised(loop, record, lambda: _play(session, loop, job))
         except BaseException:
             display.close()
-            _say_stopped(session, loop.rows, job.kind, record.folder)
+            _say_stopped(loop.rows, job.kind, record.folder)
             raise
     return Finished(record.folder, outcome)
 
@@ -112,14 +112,12 @@ def _warn(session: Session, sinks: Sequence[Sink]) -> None:
             sink.event(0.0, "warning", text)
 
 
-def _say_stopped(session: Session, rows: int, kind: str, folder: Path) -> None:
-    """What is left of it, where the valve is, and how to go on."""
+def _say_stopped(rows: int, kind: str, folder: Path) -> None:
+    """What is left of it, and how to go on. Where the valve is, is said last of all."""
     from app.resume import hint
     from hal.counted import counted
 
-    where = "the valve is at its safe command" if session.bench.safe else "the valve did NOT confirm its safe command"
-    stopped = f"stopped after {counted(rows, 'sample')}; {where}; record: {folder}"
-    echo(f"{stopped}\ngo on with: {hint(kind, folder)}", err=True)
+    echo(f"stopped after {counted(rows, 'sample')}; record: {folder}\ngo on with: {hint(kind, folder)}", err=True)
 
 
 def _play(session: Session, loop: Loop, job: Job) -> Outcome:

@@ -16,6 +16,7 @@ from hal.latch import Latch
 from hal.profile import Limits
 from hal.sample import Quality, Sample
 from hal.signals import Stopped, shielded
+from hal.whereabouts import whereabouts
 
 UNTRUSTED = Quality.MISSING | Quality.SENTINEL | Quality.IMPLAUSIBLE
 _CONFIRM = 2  # readings in a row beyond a limit that are no longer taken for a spike
@@ -47,6 +48,7 @@ class SafeBench:
         self.way_out: WayOut | None = None  # known once the bench has been left
         self.clamped = 0  # commands that were not sent as they were given
         self.safe: bool | None = None  # whether the last `make_safe` was confirmed; None before the first
+        self.sent: float | None = None  # the last command of an `exchange`, whether or not it arrived
         self._bench = bench
         self._limits = limits
         self._clock = clock
@@ -68,6 +70,11 @@ class SafeBench:
     def bench(self) -> Bench:
         """What is inside, for counters and the like; commands go through `exchange`."""
         return self._bench
+
+    @property
+    def where(self) -> str:
+        """Where the valve is, once it was sent to safety, for the operator."""
+        return whereabouts(self.info, bool(self.safe) if self.way_out is None else self.way_out.safe, self.sent)
 
     def __enter__(self) -> Self:
         if self._latch is not None:
@@ -129,6 +136,7 @@ class SafeBench:
             self._deadman.feed()
         elif self._deadman_s is not None:
             self.arm()
+        self.sent = allowed
         sample = self._bench.exchange(allowed)
         if self._trip is not None:  # the dead man's thread acted while we waited
             raise SafetyTrip(self._trip)
@@ -202,14 +210,16 @@ class SafeBench:
     def _trip_now(self, reason: str) -> None:
         self._trip = reason
         safe = self._bench.make_safe(reason)
-        raise SafetyTrip(f"{reason}; " + ("the valve is at its safe command" if safe else "the valve did NOT confirm"))
+        raise SafetyTrip(f"{reason}; {whereabouts(self.info, safe, self.sent)}")
 
     def _stalled(self) -> None:
         self._trip = "the loop stalled and the dead man's thread sent the valve to safety"
         self._bench.make_safe(self._trip)
 
     def _shout(self, reason: str, error: BaseException | None) -> None:
-        text = f"the valve did NOT confirm its safe command after: {reason}. Shut off its supply and look at it"
+        where = whereabouts(self.info, False, self.sent)
+        said = reason if where in reason else f"{where}, after: {reason}"
+        text = f"{said}. Shut off its supply and look at it"
         self._engage(text)
         raise BenchFault(text) from error
 

@@ -60,7 +60,7 @@ def command(
                 yield at, dwell_s
 
         hold(session, commands(), period_s, stop)
-    click.echo("the valve is at its safe command")
+    click.echo(session.bench.where)
 
 
 def _parse(step: str) -> tuple[bool, float]:

@@ -152,7 +152,7 @@ def _run(
         _announce(session, wanted, as_json)
         done = perform(session, job, out=out, live=live, title=wanted.controller)
         travel_in = session.profile.travel_in
-    report(judge_targets(read_run(done.folder), travel_in), done.folder, travel_in, as_json)
+    report(judge_targets(read_run(done.folder), travel_in), done.folder, travel_in, session.bench.where, as_json)
 
 
 def _numbers(text: str) -> list[float]:

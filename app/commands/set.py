@@ -51,4 +51,4 @@ def command(
     with stop_signals() as stop, open_bench(**words, acknowledge=acknowledge) as session:
         if value is not None:
             hold(session, [(value, hold_s)], period_s, stop)
-    click.echo("the valve is at its safe command")
+    click.echo(session.bench.where)

@@ -101,7 +101,7 @@ def _sweep(
     click.echo(
         f"done: {counted(done.outcome.rows, 'sample')}, {done.outcome.missing} missing, "
         f"{counted(done.outcome.overruns, 'overrun')}, "
-        f"worst lateness {done.outcome.worst_lateness_s * 1e3:.2f} ms; the valve is at its safe command"
+        f"worst lateness {done.outcome.worst_lateness_s * 1e3:.2f} ms; {session.bench.where}"
     )
     click.echo(f"record: {done.folder}")
 

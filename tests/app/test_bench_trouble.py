@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import random
 import threading
@@ -14,8 +15,10 @@ import pytest
 
 from app.cli import run
 from hal.clock import RealClock
+from hal.errors import SafetyTrip
 from hal.modbus_bench import ModbusBench
 from hal.profile import FOLDER, load_profile
+from hal.readback import ReadbackCheck
 from logs.run import read_run
 from sim_device.physics.catalog import make_physics
 from sim_device.server import VirtualDevice
@@ -73,7 +76,8 @@ def test_a_sweep_whose_port_is_pulled_out_vents_the_valve_when_it_is_back_and_ca
     words = ["--set", "at=12", "--set", "hold_s=1", "--set", "conditioning=false", "--period", "0.05"]
     assert run(["sweep", "hold", *words, "--port", device.port, "--out", str(tmp_path / "a")]) == 1
     said = capsys.readouterr().err.splitlines()
-    assert said[-1] == f"lostmotion: port {tmp_path / 'port'} is gone: unplugged, or the other end has closed it"
+    gone = f"lostmotion: port {tmp_path / 'port'} is gone: unplugged, or the other end has closed it"
+    assert said[-1] == f"{gone}; the valve is at its safe command"
     assert "the port is open again" in said
     assert f"go on with: lostmotion sweep --resume {tmp_path / 'a'} --port {device.port}" in said
     assert device.rig.command == 0.0
@@ -93,12 +97,50 @@ def test_a_run_whose_port_stays_away_says_so_and_wants_somebody_to_look(
     assert run([*words, "--out", str(tmp_path / "a")]) == 1
     said = capsys.readouterr().err.splitlines()
     assert "the port did not come back" in said
-    assert "did NOT confirm its safe command" in said[-1]
+    assert "the valve did NOT confirm its safe command, last sent " in said[-1]
+    assert said[-1].count("the valve") == 1
     assert "Shut off its supply" in said[-1]
     assert read_run(tmp_path / "a").status == "fail"
     with device:
         assert run([*words, "--out", str(tmp_path / "b")]) == 1
         assert "emergency stop not acknowledged" in capsys.readouterr().err
+
+
+def test_a_full_disk_is_said_with_where_the_valve_is(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("app.readings.line", full)
+    assert run(["set", "9", "--hold", "1"]) == 1
+    end = "free the disk and run again; the valve is at its safe command"
+    assert capsys.readouterr().err == f"lostmotion: nothing more can be written (No space left on device); {end}\n"
+    monkeypatch.setattr("logs.sink.RecordSink.write_rows", full)
+    assert run(["sweep", "hold", "--set", "hold_s=30", "--out", str(tmp_path / "r")]) == 1
+    said = capsys.readouterr().err.splitlines()[-1]
+    assert said == f"lostmotion: {tmp_path / 'r'}: the record can no longer be written (No space left on device); {end}"
+
+
+def test_a_second_master_ends_a_job_that_says_where_the_valve_is(
+    device: VirtualDevice, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def theirs(self: ReadbackCheck, commanded: float, held: float | None) -> None:
+        raise SafetyTrip("does somebody else command it?")
+
+    monkeypatch.setattr(ReadbackCheck, "judge", theirs)
+    assert run(["set", "9", "--hold", "1", "--port", device.port]) == 1
+    assert capsys.readouterr().err == "lostmotion: does somebody else command it?; the valve is at its safe command\n"
+
+
+def test_a_valve_that_is_to_be_held_is_not_said_to_be_safe(
+    device: VirtualDevice, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    profile = tmp_path / "hold.toml"
+    profile.write_text(PROFILE.replace('safe_direction = "vent"', 'safe_direction = "hold"'), encoding="utf-8")
+    assert run(["set", "9", "--hold", "0.2", "--port", device.port, "--profile", str(profile)]) == 0
+    assert capsys.readouterr().out.endswith("the valve is left where it is, last sent 9 psi\n")
+    assert device.rig.command == 9.0
 
 
 def test_monitoring_goes_on_behind_a_port_that_came_back(

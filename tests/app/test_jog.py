@@ -26,7 +26,7 @@ def test_a_bad_line_of_a_pipe_ends_the_session(text, monkeypatch, capsys) -> Non
     assert run(WORDS) == 2
     said = capsys.readouterr()
     assert steps(said.out) == ["-> 2 psi"]
-    assert said.err.endswith("lostmotion: step 'up' must look like +0.5, -1 or =8\n")
+    assert said.err.endswith("step 'up' must look like +0.5, -1 or =8; the valve is at its safe command\n")
 
 
 def test_the_last_step_of_a_pipe_needs_no_newline(monkeypatch, capsys) -> None:

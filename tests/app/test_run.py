@@ -81,7 +81,8 @@ def test_a_stopped_loop_is_gone_on_with_at_the_target_it_did_not_finish(
         patched.setattr(RunDisplay, "show", interrupt)
         assert close(*words, "--out", first, "--seed", "4", "--effect", "stiction=0.1", "--twin", model) == 130
     said = capsys.readouterr().err
-    assert "; the valve is at its safe command; record: " in said
+    assert f"stopped after 21 samples; record: {first}\n" in said
+    assert said.endswith("lostmotion: interrupted; the valve is at its safe command\n")
     assert f"go on with: lostmotion run --resume {first} --twin {model} --seed 4 --effect stiction=0.1\n" in said
     stopped = read_run(tmp_path / "a")
     assert (stopped.status, stopped.rows) == ("abort", 21)
