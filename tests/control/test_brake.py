@@ -43,8 +43,7 @@ def hold(
         state, command_psi = law.step(state, sample, targets[tick // 400], TICK_S)
         opened.clock.sleep_until((tick + 1) * TICK_S)
         sample = opened.bench.exchange(command_psi)
-    off = 100.0 * (stems.reshape(-1, 400) - np.array(targets)[:, None]) / DESIGN.travel
-    return state, off
+    return state, 100.0 * (stems.reshape(-1, 400) - np.array(targets)[:, None]) / DESIGN.travel
 
 
 def test_it_lands_and_then_nothing_moves() -> None:

@@ -114,12 +114,11 @@ def errors(level: float) -> np.ndarray:
 def test_a_cause_behind_the_pressure_that_unseen_data_do_not_need(position: tuple[StageResult, Decision]) -> None:
     result, decision = position
     first, second = decision.names
-    causes = tuple(Named(name, "sensor", 0.9, None, {}) for name in decision.names)
-    judgement = Judgement("effects", causes, (), ())
+    judgement = Judgement("effects", tuple(Named(name, "sensor", 0.9, None, {}) for name in decision.names), (), ())
     for left, healthy, idle in ((1.01, 0.0, second), (1.5, 0.0, None), (1.1, 1.15, second), (1.1, 1.05, None)):
         parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {first: 1.5, second: left}, {})
         assert idle_cause(parts, judgement, result, 1.0, healthy) == idle
-    alone = replace(judgement, causes=causes[1:])
+    alone = replace(judgement, causes=judgement.causes[1:])
     parts = GapParts(errors(3.0), errors(2.0), errors(0.01), {second: 0.9}, {})
     assert idle_cause(parts, alone, result, 1.0) is None
 

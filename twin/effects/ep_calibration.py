@@ -49,7 +49,7 @@ _SETTLING = Parameter(
 
 def _both(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_GAIN] = 1.0 + values[0]
-    c.ep[EP_ZERO] = values[1]
+    c.ep[EP_ZERO] += values[1]
 
 
 def _gain(c: Coefficients, values: Sequence[float]) -> None:
@@ -57,11 +57,12 @@ def _gain(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _zero(c: Coefficients, values: Sequence[float]) -> None:
-    c.ep[EP_ZERO] = values[0]
+    c.ep[EP_ZERO] += values[0]
 
 
 def _drifts(c: Coefficients, values: Sequence[float]) -> None:
-    c.ep[[EP_ZERO, EP_DRIFTS, EP_DRIFTS_S]] = values
+    c.ep[EP_ZERO] += values[0]
+    c.ep[[EP_DRIFTS, EP_DRIFTS_S]] = values[1:]
 
 
 EFFECT = Effect(

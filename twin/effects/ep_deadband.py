@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from twin.effect import Apply, Coefficients, Effect, Form, Parameter
-from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT
+from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400
@@ -46,11 +46,26 @@ def _shut(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[EP_CHAMBER] = 1.0 + values[1] if values[0] > 0.0 else 0.0
 
 
+def _one_side(c: Coefficients, values: Sequence[float]) -> None:
+    # A port that is overlapped alone: half the band to each side of what is aimed at, which lies half of it beside.
+    _mode(3.0)(c, (0.5 * abs(values[0]),))
+    c.ep[EP_ZERO] -= 0.5 * values[0]
+
+
 def _gated(c: Coefficients, values: Sequence[float]) -> None:
     _mode(5.0)(c, values)
     c.ep[EP_SHUT] = values[1]
 
 
+_ONE_SIDE = Parameter(
+    name="band",
+    kind="pressure",
+    lower=-1.5,
+    upper=1.5,
+    starts=(-0.3, -0.08, 0.08, 0.3),
+    scale=0.15,
+    doc="pressure error at which the port that fills begins to open; below 0 the one that exhausts, the other at once",
+)
 #: In which step it opens depends on the band, but not on all that came before: a pilot that has shut has forgotten.
 _LATCH = replace(_band("pressure error at which the pilot opens in full", False)[0], looks=100)
 _SHUTS = Parameter(
@@ -93,6 +108,7 @@ EFFECT = Effect(
     claim="The converter ignores command changes inside a band.",
     equations="hold: the goal v follows u when |u - v| > band; play: v = max(u - band, min(u + band, v)); "
     "overlap: no flow while |u - p| <= band, outside it flow counts from the edge (or in full); "
+    "overlap_one_side: none for errors between 0 and the band; "
     "latched: in full from |u - p| = band until shuts band; "
     "overlap_and_chamber: likewise, air of the booster times 1 + room; "
     "overlap_leaking: tau dp/dt = e - max(-band, min(e, band)) + leak e, e = u - p",
@@ -113,6 +129,7 @@ EFFECT = Effect(
             by_pressure=True,
         ),
         Form("overlap_abrupt", _band("pressure error at which the pilot opens in full", True), _mode(4.0)),
+        Form("overlap_one_side", (_ONE_SIDE,), _one_side),
         Form("overlap_latched", (_LATCH, _SHUTS), _gated),
     ),
     erratic=True,
