@@ -14,6 +14,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.effect import Coefficients, Form
+from twin.kernels.active import same
 from twin.kernels.ep import ep_kernel
 from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
 from twin.kernels.sinking import sunk_by
@@ -44,6 +45,8 @@ from twin.slots import (
 from twin.timegrid import TimeGrid
 
 _TABLE = 1025
+#: As shares of the travel: no curve holds far beyond it.
+_BEYOND = np.linspace(-0.5, 1.5, 2 * GRID - 1)
 _Pressure = TypeVar("_Pressure", float, FloatArray)
 
 
@@ -143,10 +146,10 @@ def curve_tables(c: Coefficients) -> tuple[float, float, FloatArray, FloatArray]
     """The two curves as tables over a uniform pressure grid: (first pressure, step, closing, opening)."""
     d = c.design
     k1, k2 = d.compliance * c.close_gain, d.compliance * c.open_gain
-    if (c.close_shift == c.close_shift[0]).all() and (c.open_shift == c.open_shift[0]).all():
+    if same(c.close_shift) and same(c.open_shift):
         a1, a2 = d.a1 + c.close_shift[0], d.a2 + c.open_shift[0]
         return 0.0, 1.0, k1 * (np.arange(2.0) - a1), k2 * (np.arange(2.0) - a2)
-    w = np.linspace(-0.5, 1.5, 2 * GRID - 1)
+    w = _BEYOND
     close_shift = np.interp(w, c.xi, c.close_shift)
     open_shift = np.interp(w, c.xi, c.open_shift)
     # A curve that folds is a snap: the stem jumps to the next position that needs the same pressure, which closing is
@@ -190,5 +193,10 @@ def core_at(c: Coefficients, reading: float) -> float:
 
 def stem_at(c: Coefficients, reading: float) -> float:
     """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
+    return stem_of(c, core_at(c, reading))
+
+
+def stem_of(c: Coefficients, core: float) -> float:
+    """The stem position, within the stops, with the core at `core` at the start."""
     low, high = stem_stops(c.valve)
-    return min(max(core_at(c, reading) - sunk_by(c.sensor), low), high)
+    return min(max(core - sunk_by(c.sensor), low), high)

@@ -15,7 +15,7 @@ import numpy as np
 from logs.recording import FloatArray, Recording
 from twin.chain import chain_response, takes_air
 from twin.fit.trial import Trial, concatenate
-from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_response
+from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_of, stem_response
 from twin.slots import S_CORE, V_REMEMBERS
 
 #: Of what the readings go through: a prediction that goes through less stays put.
@@ -51,7 +51,8 @@ def predict_reading(plant: Plant, trial: Trial) -> FloatArray:
 def _reading(plant: Plant, trial: Trial, pressure: FloatArray | None) -> FloatArray:
     c = plant.coefficients(trial.recording.duration_s, trial.place)
     picked = picked_up(c, trial.start_pressure)
-    start, c.sensor[S_CORE] = stem_at(c, trial.start_position - picked), core_at(c, trial.start_position - picked)
+    core = core_at(c, trial.start_position - picked)
+    start, c.sensor[S_CORE] = stem_of(c, core), core
     play = start if trial.start_play is None else stem_at(c, trial.start_play - picked)
     c.valve[V_REMEMBERS] = trial.remembers
     if pressure is None:

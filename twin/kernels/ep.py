@@ -11,6 +11,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.active import acts
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
@@ -49,6 +50,9 @@ from twin.slots import (
     EP_ZERO,
     FOREVER,
 )
+
+#: What makes the lag another one, besides a band and limits.
+_OTHER_LAGS = np.array([EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN])
 
 
 def ep_kernel(
@@ -119,9 +123,9 @@ def latest(c: FloatArray, goals: Sequence[FloatArray]) -> FloatArray:
 
 def through_ports(c: FloatArray) -> FloatArray:
     """The coefficients of a converter whose ports let less through, or are shut: of its booster and chamber, if any."""
-    ports = c[[EP_PORT_UP, EP_PORT_DOWN]]
-    if (ports == 1.0).all() and c[EP_CHAMBER] == 0.0:
+    if c[EP_PORT_UP] == c[EP_PORT_DOWN] == 1.0 and c[EP_CHAMBER] == 0.0:
         return c
+    ports = c[[EP_PORT_UP, EP_PORT_DOWN]]
     narrow = c.copy()
     if boosted(c):
         narrow[[EP_FULL_UP, EP_FULL_DOWN]] /= ports
@@ -136,7 +140,7 @@ def through_ports(c: FloatArray) -> FloatArray:
 def bounded(c: FloatArray) -> bool:
     """Whether the lag toward the goal is more than a lag: an overlap, a quick exhaust, a clogged passage, a limit."""
     limited = min(c[EP_RATE_UP], c[EP_RATE_DOWN], c[EP_CLIP], c[EP_CUT], c[EP_TANK]) < FOREVER
-    return bool(limited or c[EP_BAND_MODE] >= 3.0 or c[[EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN]].any())
+    return bool(limited or c[EP_BAND_MODE] >= 3.0 or acts(c, _OTHER_LAGS))
 
 
 def boosted(c: FloatArray) -> bool:

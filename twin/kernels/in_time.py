@@ -6,6 +6,7 @@ import numpy as np
 from scipy.special import expit
 
 from logs.recording import FloatArray
+from twin.kernels.active import acts
 from twin.slots import (
     FOREVER,
     V_BREAKS,
@@ -24,12 +25,12 @@ from twin.slots import (
     V_STIFFENS,
 )
 
-_WIDENING = [V_DRIFT_RATE, V_DRIFT_AMP, V_STEP, V_STIFFENS]
+_WIDENING = np.array([V_DRIFT_RATE, V_DRIFT_AMP, V_STEP, V_STIFFENS])
 
 
 def widens(c: FloatArray) -> bool:
     """Whether the play gets wider or narrower."""
-    return bool(c[_WIDENING].any())
+    return acts(c, _WIDENING)
 
 
 def widening_at(t: FloatArray, c: FloatArray) -> FloatArray:

@@ -11,6 +11,7 @@ from numba import njit
 from scipy.interpolate import CubicSpline
 
 from logs.recording import FloatArray
+from twin.kernels.active import acts
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.mean import running_mean
 from twin.kernels.second_order import swinging
@@ -65,8 +66,11 @@ from twin.slots import (
 #: The pieces of a natural cubic spline are linear in its knots: (4, pieces, knots), for knots 1 apart.
 _CARDINAL = CubicSpline(np.arange(KNOTS + 1.0), np.eye(KNOTS + 1), bc_type="natural").c
 #: What makes a reading depend on more than where the stem is.
-_FILTERS = [S_LAG_S, S_LAG2_S, S_LAG3_S, S_THRICE_S, S_NATURAL_S, S_MASS_NATURAL_S, S_WINDOW_S]
-_TABLE = slice(S_TABLE, S_TABLE + TABLE)
+_FILTERS = np.array([S_LAG_S, S_LAG2_S, S_LAG3_S, S_THRICE_S, S_NATURAL_S, S_MASS_NATURAL_S, S_WINDOW_S])
+_TABLE = np.arange(S_TABLE, S_TABLE + TABLE)
+_TABLE_AT = np.linspace(0.0, 1.0, TABLE + 2)
+#: What bends its static curve.
+_CURVES = np.array([S_BOW, S_SWING, S_LEAVES, S_OTHER, S_KINK, S_WAVE, *_TABLE])
 
 
 def sensor_kernel(
@@ -107,7 +111,7 @@ def sensor_kernel(
 
 def filters(c: FloatArray) -> bool:
     """Whether the reading depends on more than where the stem is."""
-    return bool(c[_FILTERS].any())
+    return acts(c, _FILTERS)
 
 
 def lags_s(c: FloatArray) -> list[float]:
@@ -148,7 +152,7 @@ def static_reading(x: FloatArray, t: FloatArray, c: FloatArray) -> FloatArray:
 
 def curved(c: FloatArray) -> bool:
     """Whether the reading is anything but proportional to the position."""
-    return bool(c[[S_BOW, S_SWING, S_LEAVES, S_OTHER, S_KINK, S_WAVE]].any() or c[_TABLE].any())
+    return acts(c, _CURVES)
 
 
 def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
@@ -164,8 +168,8 @@ def curvature(x: FloatArray, c: FloatArray) -> FloatArray:
         bend = bend + c[S_KINK] * np.minimum(xi / c[S_KINK_AT], (1.0 - xi) / (1.0 - c[S_KINK_AT]))
     if c[S_WAVE] != 0.0:
         bend = bend + c[S_WAVE] * np.sin(2.0 * np.pi * xi)
-    if c[_TABLE].any():
-        bend = bend + np.interp(xi, np.linspace(0.0, 1.0, TABLE + 2), np.concatenate([[0.0], c[_TABLE], [0.0]]))
+    if acts(c, _TABLE):
+        bend = bend + np.interp(xi, _TABLE_AT, np.concatenate([[0.0], c[_TABLE], [0.0]]))
     return np.asarray(c[S_TRAVEL] * bend)
 
 

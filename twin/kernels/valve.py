@@ -11,6 +11,7 @@ from collections.abc import Callable
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.kernels.active import acts
 from twin.kernels.check_valve import eased_pass
 from twin.kernels.coupled import coupled_steps
 from twin.kernels.coupled_start import coupled_start
@@ -67,10 +68,12 @@ from twin.slots import (
     stem_stops,
 )
 
-_STIFF = [V_BREAKAWAY, V_HELD, V_SHORT, V_KEPT, V_TAU_AFTER_S, V_ON_STEM, V_SQUARED_S, V_SQUARED_S + 1]
-_STIFF += [V_EASES, V_EASES + 1]
-_COUPLING = [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_KEPT, V_ON_STEM]
-_COUPLING += [V_DRAG_CLOSE_S, V_DRAG_OPEN_S, V_RELAX, V_SQUARED_S, V_SQUARED_S + 1]
+_SQUARED = (V_SQUARED_S, V_SQUARED_S + 1)
+_STIFF = np.array([V_BREAKAWAY, V_HELD, V_SHORT, V_KEPT, V_TAU_AFTER_S, V_ON_STEM, *_SQUARED, V_EASES, V_EASES + 1])
+_DRAG = (V_DRAG_CLOSE_S, V_DRAG_OPEN_S, *_SQUARED)
+_COUPLING = np.array(
+    [V_IN_MOTION, V_BREAKAWAY, V_WEAR, V_STRIBECK, V_HELD, V_SHORT, V_KEPT, V_ON_STEM, V_RELAX, *_DRAG]
+)
 #: A speed that follows within so short a time follows at once [s].
 _AT_ONCE_S = 1e-4
 
@@ -105,7 +108,7 @@ def valve_kernel(
 
 def couples(c: FloatArray, bends: Bends) -> bool:
     """Whether target and stem act on each other."""
-    return bool(c[_COUPLING].any() or bends[0].size > 1)
+    return acts(c, _COUPLING) or bends[0].size > 1
 
 
 def coupled_coefficients(c: FloatArray) -> FloatArray:
@@ -124,9 +127,9 @@ def coupling(c: FloatArray) -> tuple[Callable[..., tuple[FloatArray, FloatArray]
 
     Friction that turns over a distance, or with the speed, has one of its own, except beside what only the other knows.
     """
-    if c[V_ROUNDED] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[[*_STIFF, V_STRIBECK]].any():
+    if c[V_ROUNDED] > 0.0 and c[V_IN_MOTION] == 1.0 and c[V_STRIBECK] == 0.0 and not acts(c, _STIFF):
         return rounded_start, rounded_steps
-    elastic = c[V_PRESLIDING] > 0.0 and c[V_IN_MOTION] == 1.0 and not c[_STIFF].any()
+    elastic = c[V_PRESLIDING] > 0.0 and c[V_IN_MOTION] == 1.0 and not acts(c, _STIFF)
     return (elastic_start, elastic_steps) if elastic else (coupled_start, coupled_steps)
 
 
