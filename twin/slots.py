@@ -115,9 +115,7 @@ V_RELAX_TAU_S = 45
 V_ON_STEM = 46  # compliance, if what friction grows by holds the stem off its target [position/pressure]; 0: play grows
 V_STRETCHES = 47  # 1: what creeps is added to the stem, up to its stops, and is no part of its motion that comes late
 V_STRETCHED = 48  # what there is of that at the start [-]
-V_SQUARED_S = (
-    49  # what drag adds to the lag of a stem that closes, and (50) opens, for each unit of speed [s2/position]
-)
+V_SQUARED_S = 49  # drag: what a unit of speed adds to the lag of a stem that closes, and (50) opens [s2/position]
 V_KEPT = 51  # how far friction that is the same at any speed keeps the stem from its target [position]
 V_GIVE_LOW = 52  # of what the stem is pulled beyond its lower stop, the share that still pulls it there [-]; 1: all
 V_GIVE_HIGH = 53
@@ -134,7 +132,8 @@ V_STEP_EASES_S = 64
 V_RINGS = 65  # 1: the plays are those of elastic rings, which stay stretched at a stop
 V_RELAX_TARGET = 66  # as V_RELAX, of a spring by which the target of the stem is held
 V_STEP_TAKES_S = 67  # with which time constant V_STEP comes about its time, as a logistic curve [s]; 0: at once
-V_COUNT = 68
+V_WITHIN = 68  # 1: drag slows what pulls the stem within the stops; 0: the stops may have pressure to spare for it
+V_COUNT = 69
 
 # --- sensor: stem to reading ------------------------------------------------------------------------------------
 S_GAIN = 0

@@ -78,11 +78,13 @@ def in_small_steps(
     relax: tuple[float, float] = (0.0, 1.0),
     asymmetry: float = 0.0,
     throttled: tuple[float, float] = (0.0, 0.0),
+    within: bool = False,
 ) -> FloatArray:
     """dx/dt = (clip(w - tau drag dx/dt) - x) / tau, solved for dx/dt, behind a spring that takes `relax[0]` more at
     first and lets go of it with the time constant `relax[1]`, and that is less stiff closing by a share `asymmetry`.
 
-    `throttled`: drag of the square of the speed, as a share of tau at the highest speed, closing and opening.
+    `throttled`: drag of the square of the speed, as a share of tau at the highest speed, closing and opening;
+    `within`: the stops have no pull to spare for it.
     """
     time_s = np.arange(0.0, TIME_S[-1] + SMALL_S, SMALL_S)
     x, w, late, found = 0.0, 0.0, 0.0, np.empty(time_s.size)
@@ -92,6 +94,7 @@ def in_small_steps(
         bottom, top = D.compliance * (p - taken - D.a1), D.compliance * (p - taken - D.a2)
         bottom, top = bottom + asymmetry * x, top - asymmetry * x
         w = max(bottom, min(top, w if friction == "before the lag" else x))
+        w = min(D.travel, max(0.0, w)) if within else w
         closes = w > x
         stop, share, square = (D.travel, drag[0], throttled[0]) if closes else (0.0, drag[1], throttled[1])
         free = max(np.roots([square * D.tau_s / D.rate_limit, (1.0 + share) * D.tau_s, -abs(w - x)]).real)

@@ -31,10 +31,12 @@ def test_live_and_with_other_steps_as_at_once(friction: str) -> None:
 
 @pytest.mark.thorough
 @pytest.mark.parametrize("friction", FRICTIONS)
+@pytest.mark.parametrize("form", ["orifice_each_way", "orifice_within_stops"])
 @pytest.mark.parametrize("throttled", [(2.0, 0.0), (0.0, 5.0)])
-def test_an_orifice_like_small_steps_of_its_law(friction: str, throttled: tuple[float, float]) -> None:
-    one = plant(friction, "asymmetric_damping", "orifice_each_way", throttled)
-    assert np.max(np.abs(at_once(one) - in_small_steps(friction, throttled=throttled))) < 0.004 * D.travel
+def test_an_orifice_like_small_steps_of_its_law(friction: str, form: str, throttled: tuple[float, float]) -> None:
+    one = plant(friction, "asymmetric_damping", form, throttled)
+    law = in_small_steps(friction, throttled=throttled, within=form == "orifice_within_stops")
+    assert np.max(np.abs(at_once(one) - law)) < 0.004 * D.travel
     assert np.allclose(row_by_row(one), at_once(one), atol=1e-9)
 
 

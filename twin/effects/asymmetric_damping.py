@@ -16,6 +16,7 @@ from twin.slots import (
     V_SQUARED_S,
     V_TAU_CLOSE_S,
     V_TAU_OPEN_S,
+    V_WITHIN,
 )
 
 
@@ -59,6 +60,17 @@ def _orifice_alike(c: Coefficients, values: Sequence[float]) -> None:
     _orifice(c, (values[0], values[0]))
 
 
+def _within(
+    orifice: Callable[[Coefficients, Sequence[float]], None],
+) -> Callable[[Coefficients, Sequence[float]], None]:
+    def write(c: Coefficients, values: Sequence[float]) -> None:
+        # Where the actuator has the stops, and the damper sits behind it on the stem.
+        orifice(c, values)
+        c.valve[V_WITHIN] = 1.0
+
+    return write
+
+
 def _check_valve(way: int) -> Callable[[Coefficients, Sequence[float]], None]:
     def write(c: Coefficients, values: Sequence[float]) -> None:
         # What opens by the pressure across the damper, which its speed makes, lets by a part of what flows above that.
@@ -99,6 +111,7 @@ EFFECT = Effect(
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
     "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
     "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit; "
+    "orifice_within_stops: dx/dt = (clip(w') - x) / tau - drag dx/dt; "
     "check_valve: what dx/dt has above a speed, one way, times 1 + eases",
     source="Kayihan, Doyle, Control Eng. Practice 8 (2000) 799; Merritt, Hydraulic Control Systems (Wiley 1967); "
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (viscous friction)",
@@ -107,10 +120,12 @@ EFFECT = Effect(
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
         Form("orifice_each_way", (_throttled("closing"), _throttled("opening")), _orifice),
+        Form("orifice_within_stops", (_throttled("closing"), _throttled("opening")), _within(_orifice)),
         Form("check_valve_closing", _eases("closing"), _check_valve(0)),
         Form("check_valve_opening", _eases("opening"), _check_valve(1)),
         # what holds the stem alike both ways is no asymmetry
         Form("orifice_alike", (_throttled("both_ways"),), _orifice_alike, outside=_ALIKE),
+        Form("alike_within_stops", (_throttled("both_ways"),), _within(_orifice_alike), outside=_ALIKE),
     ),
     absorbs=("tau",),
 )

@@ -41,6 +41,7 @@ from twin.slots import (
     V_TAU_OPEN_S,
     V_TRAVEL,
     V_WEAR,
+    V_WITHIN,
 )
 
 _SAME = 1e-9
@@ -198,7 +199,7 @@ def coupled_steps(
     (spreads, weights), (more_at, less_at, softer_at) = plays, bends
     bent, varies, place = more_at.size > 1, widening.size > 1, (0.0, (more_at.size - 1) / c[V_TRAVEL])
     ends, lowest, highest, aging_s = (stops[0], stops[1]), stops[2], stops[3], c[V_AGING_S]
-    breakaway, kept, stick_speed = c[V_BREAKAWAY], c[V_HELD], c[V_STICK_SPEED]
+    breakaway, kept, stick_speed, spare = c[V_BREAKAWAY], c[V_HELD], c[V_STICK_SPEED], 1.0 - c[V_WITHIN]
     modes, rests = (stick_speed >= FOREVER, c[V_TARGET_STICKS] == 1.0), c[V_TARGET_STICKS] != 0.0
     stribeck, short, fading, wear, moves = c[V_STRIBECK], c[V_SHORT], c[V_STRIBECK_SPEED], c[V_WEAR], c[V_IN_MOTION]
     x, w, after, stuck, late, relax = state[0], state[1], state[2], state[3] != 0.0, state[9], c[V_RELAX]
@@ -229,7 +230,8 @@ def coupled_steps(
                 reach, slips = _element(elements[j] + carried, free, held, extra, modes, ends)
                 elements[j] = max(ends[0], min(ends[1], reach)) if slips else reach
                 slipped = slipped or slips
-                new_w, new_over = new_w + weights[j] * elements[j], new_over + weights[j] * (reach - elements[j])
+                new_w += weights[j] * elements[j]
+                new_over += spare * weights[j] * (reach - elements[j])
             new_after = _toward(after, w, new_w, lates)
             pulls = _left(after, x, short * fades + rubs), _left(new_after, x, short * fades + rubs)
             way = 0 if after + new_after > 2.0 * x else 1

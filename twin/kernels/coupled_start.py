@@ -7,7 +7,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.slots import FOREVER, V_ON_STEM, V_OUTER, V_STRIBECK, V_TRAVEL
+from twin.slots import FOREVER, V_ON_STEM, V_OUTER, V_STRIBECK, V_TRAVEL, V_WITHIN
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -48,4 +48,4 @@ def coupled_start(
         reach = max(bottom, min(top, elements[j]))
         elements[j] = max(ends[0], min(ends[1], reach))
         w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
-    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, over, x]), elements
+    return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, (1.0 - c[V_WITHIN]) * over, x]), elements
