@@ -139,6 +139,10 @@ SAME = {
     "soft_at_stem": (plant_with("nonlinear_spring", "stem_slope", 0.3), PlainValve(stretch=softer)),
     "spot_at_stem": (plant_with("position_dependent_friction", "stem_spot", 0.3, 0.5, 0.15), PlainValve(grip=spot)),
     "drift": (plant_with("friction_drift", "linear", 0.01), PlainValve(grow=lambda t: 0.01 * t)),
+    "cold": (
+        plant_with("friction_drift", "from_cold", 0.4, 30.0),
+        PlainValve(grow=lambda t: 0.4 * np.exp(-t / 30.0)),
+    ),
     "sudden": (plant_with("friction_drift", "sudden", 0.4, 0.5), PlainValve(grow=lambda t: 0.4 * (t >= 29.9))),
     "gradual": (
         plant_with("friction_drift", "gradual", 0.4, 30.0, 6.0),

@@ -30,6 +30,7 @@ DRIFTS = [
     ("lvdt_drift", "swing", (0.004, -0.003, 210.0)),
     ("friction_drift", "linear", (6e-4,)),
     ("friction_drift", "warm_up", (0.3, 150.0)),
+    ("friction_drift", "from_cold", (0.3, 150.0)),
     ("friction_drift", "sudden", (0.3, 0.2)),
     ("friction_drift", "sudden", (0.3, 0.8)),
 ]

@@ -10,8 +10,11 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record, judged
+from twin.case import make_case
 from twin.catalog import effect
+from twin.choose.candidates import effect_causes
 from twin.effect import Scales
+from twin.fit.channel import pressure_channel
 from twin.place import Place
 from twin.plant import Inserted, Plant, pressure_response
 from twin.timegrid import make_grid
@@ -85,6 +88,13 @@ def test_behind_a_booster_it_is_the_supply_of_the_booster() -> None:
     top, bottom = np.abs(at_s - 45.0) < 12.0, np.abs(at_s - 135.0) < 12.0
     assert np.abs(swings - high)[top].max() < 0.1 < np.abs(swings - low)[top].max()
     assert np.abs(swings - low)[bottom].max() < 0.1 < np.abs(swings - high)[bottom].max()
+
+
+def test_it_stands_trial_on_several_recordings_too() -> None:
+    """Each may have begun as the compressor did; those with a clock in common tell how far apart they are."""
+    record = a_record(plant("swinging_cut_off"))
+    channel = pressure_channel(make_case([record, record], D, ()).trials, 0.01)
+    assert {"swinging", "swinging_cut_off"} <= {c.form.name for c in effect_causes(channel) if c.form is not None}
 
 
 def test_its_starts_are_read_from_where_the_pressure_is_held_back() -> None:

@@ -51,6 +51,7 @@ _SETTLING = Parameter(
     neutral=200.0,
     size=False,
 )
+_EXCESS = replace(_CHANGE, name="excess", doc="by how much the half deadband is wider when the recordings begin")
 _WEAR = Parameter(
     name="wear",
     kind="pressure_per_position",
@@ -106,6 +107,12 @@ def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
     left = c.to_come(*values)
     c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = left, values[1]
     c.widen(values[0] - left)
+
+
+def _from_cold(c: Coefficients, values: Sequence[float]) -> None:
+    left = c.to_come(*values)
+    c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = -left, values[1]
+    c.widen(left)
 
 
 def _wear(c: Coefficients, values: Sequence[float]) -> None:
@@ -170,6 +177,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband changes with time.",
     equations="half deadband = (a1 - a2)/2 + rate t, or + change (1 - exp(-t/settling)), + wear * distance, or a step; "
+    "from_cold: + excess exp(-t/settling), of a design that was taken when it was warm; "
     "gradual: + change / (1 + exp((middle - t) / takes)), as packing that swells; "
     "sudden_easing: a step of which a share goes again, as packing that is tightened relaxes; "
     "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own; "
@@ -179,6 +187,7 @@ EFFECT = Effect(
         Form("linear", (_RATE,), _linear),
         Form("goes_on", (_RATE,), _goes_on, apart=_MANY),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
+        Form("from_cold", (_EXCESS, _SETTLING), _from_cold),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
         Form("gradual", (_CHANGE, _MIDDLE, _TAKES), _gradual, _middles),

@@ -229,8 +229,7 @@ def coupled_steps(
                     held = (softer * low, softer * high)
                 reach, slips = _element(elements[j] + carried, free, held, extra, modes, ends)
                 elements[j] = max(ends[0], min(ends[1], reach)) if slips else reach
-                slipped = slipped or slips
-                new_w += weights[j] * elements[j]
+                new_w, slipped = new_w + weights[j] * elements[j], slipped or slips
                 new_over += spare * weights[j] * (reach - elements[j])
             new_after = _toward(after, w, new_w, lates)
             pulls = _left(after, x, short * fades + rubs), _left(new_after, x, short * fades + rubs)
