@@ -26,8 +26,8 @@ def polished(channel: Channel, fits: Sequence[Fit], most: int, pool: Executor) -
     """The fits, the best `most` of them fitted on, by what they leave."""
     ranked = sorted(fits, key=lambda f: f.mse)
     better = list(pool.map(lambda f: fit(channel, f.space, [f.z], rounds=_ROUNDS), ranked[:most]))
-    best = min(better, key=lambda f: f.mse)
-    better[better.index(best)] = best = _about(channel, best, pool)
+    first = min(range(len(better)), key=lambda k: better[k].mse)
+    best = better[first] = _about(channel, better[first], pool)
     # What the best found for a cause may be what the others missed: rough valleys are found by chance.
     told = list(pool.map(lambda f: _told(channel, f, best), better))
     return sorted([*told, *ranked[most:]], key=lambda f: f.mse)
@@ -54,9 +54,7 @@ def _about(channel: Channel, one: Fit, pool: Executor) -> Fit:
     places = _rough_places(one)
     if not places or one.mse < _NOTHING:
         return one
-    first = np.outer(_SPREADS, np.ones(len(places))) * np.random.default_rng(0).standard_normal(
-        (_SPREADS.size, len(places))
-    )
+    first = _SPREADS[:, None] * np.random.default_rng(0).standard_normal((_SPREADS.size, len(places)))
     first[0] = 0.0
     found = differential_evolution(
         partial(_left, channel, one, places),

@@ -110,9 +110,8 @@ def _warm_up(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _from_cold(c: Coefficients, values: Sequence[float]) -> None:
-    left = c.to_come(*values)
-    c.valve[V_DRIFT_AMP], c.valve[V_DRIFT_TAU_S] = -left, values[1]
-    c.widen(left)
+    _warm_up(c, (-values[0], values[1]))
+    c.widen(values[0])
 
 
 def _wear(c: Coefficients, values: Sequence[float]) -> None:
