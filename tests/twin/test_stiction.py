@@ -114,3 +114,39 @@ def test_friction_that_falls_at_once_leaves_a_fast_stem_alone() -> None:
     fast = stem("short_of_target", (0.06, 1e-3, 0.0), pressure, 0.0)
     assert np.abs(fast - free).max() < 0.06 * K
     assert np.abs(np.diff(fast[10:]) - np.diff(free[10:])).max() < 1e-4
+
+
+@pytest.mark.parametrize(
+    ("form", "values"), [("one_jump", (0.3,)), ("slip_until_slow", (0.3, 2e-4)), ("target_sticks", (0.3, 4e-3))]
+)
+def test_a_stem_at_rest_may_have_been_left_where_the_breakaway_holds_it(form: str, values: tuple[float, ...]) -> None:
+    """Beyond where sliding friction alone would let it go, both ways, and not beyond the breakaway."""
+    closing, opening = DESIGN.a1 + 0.25 / K, DESIGN.a2 + 0.25 / K
+    for held, slides in ((closing + 0.28, closing + 0.32), (opening - 0.28, opening - 0.32)):
+        assert stem(form, values, levels((held, 20.0)), 0.25)[-1] == 0.25
+        assert abs(stem(form, values, levels((slides, 40.0)), 0.25)[-1] - 0.25) > 0.3 * K
+
+
+def test_what_a_stop_holds_takes_no_part_in_where_a_stem_was_left() -> None:
+    """The play has a stop at 0: of what would take it further the breakaway needs nothing where only the rest pulls."""
+    near = DESIGN.a2 - 0.05 / K
+    for form, still in (("target_sticks", True), ("target_sticks_pressed", False)):
+        assert bool(stem(form, (0.3, 4e-3), levels((near - 1.0, 60.0)), 0.02)[-1] == 0.02) is still
+
+
+def test_one_jump_is_its_law_from_where_the_stem_was_left() -> None:
+    """In small steps: out of the band of the breakaway the target goes onto its curve, and sticks there again."""
+    time_s = np.arange(0.0, 200.0, 0.05)
+    pressure = 7.0 + 3.0 * np.sin(time_s / 13.0) + 0.6 * np.sin(time_s / 2.9)
+    x = target = 0.1
+    expected = [x]
+    for p in pressure[1:]:
+        if p > DESIGN.a1 + target / K + 0.5:
+            target = min(K * (p - DESIGN.a1), DESIGN.travel)
+        elif p < DESIGN.a2 + target / K - 0.5:
+            target = max(K * (p - DESIGN.a2), 0.0)
+        speed = np.clip((target - x) / DESIGN.tau_s, -DESIGN.rate_limit, DESIGN.rate_limit)
+        x = x + 0.05 * speed
+        expected.append(x)
+    found = stem("one_jump", (0.5,), pressure, 0.1)
+    assert np.sqrt(np.mean((found - np.array(expected)) ** 2)) < 0.004 * DESIGN.travel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.slots import (
@@ -32,6 +33,8 @@ _BREAKAWAY = Parameter(
     doc="pressure above the sliding curve that is needed to start",
     smooth=False,
 )
+#: Whole jumps of this size make the way, so that a hundredth too much shifts the last of many by half a jump.
+_JUMP = replace(_BREAKAWAY, looks=112)
 _STICK_SPEED = Parameter(
     name="stick_speed",
     kind="position_rate",
@@ -175,7 +178,7 @@ EFFECT = Effect(
         Form("target_sticks", (_BREAKAWAY, _TARGET_SPEED), _target_sticks),
         Form("target_sticks_pressed", (_BREAKAWAY, _TARGET_SPEED), _target_sticks_pressed),
         Form("grows_at_rest", (_BREAKAWAY, _AGING), _grows_at_rest),
-        Form("one_jump", (_BREAKAWAY,), _one_jump),
+        Form("one_jump", (_JUMP,), _one_jump),
         Form("held_stem", (_BREAKAWAY, _STICK_SPEED), _held_stem),
         Form("held_stem_pressed", (_BREAKAWAY, _STICK_SPEED), _pressed),
         Form("falling_with_speed", (_BREAKAWAY, _FALL_SPEED), _falling),

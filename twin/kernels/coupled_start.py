@@ -7,7 +7,16 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.slots import FOREVER, V_ON_STEM, V_OUTER, V_STRIBECK, V_TRAVEL, V_WITHIN
+from twin.slots import (
+    FOREVER,
+    V_BREAKAWAY,
+    V_ON_STEM,
+    V_OUTER,
+    V_STRIBECK,
+    V_TARGET_STICKS,
+    V_TRAVEL,
+    V_WITHIN,
+)
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
@@ -17,6 +26,12 @@ def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
     i = min(max(int(q), 0), table.size - 2)
     value: float = table[i] + (q - i) * (table[i + 1] - table[i])
     return value
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _held(free: float, held: float, inside: bool, ends: tuple[float, float]) -> float:
+    """Where the breakaway holds an element, if what the stops keep the play from does not pull at it."""
+    return held + min(ends[1], max(ends[0], free)) - free if inside else held
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -30,8 +45,11 @@ def coupled_start(
     bends: Bends,
     start: tuple[float, float],
 ) -> tuple[FloatArray, FloatArray]:
-    """State (see `coupled_steps`) and elements at rest; `start`: (x, w), `stops`: of the play, of the stem."""
-    grid, ends = (tables[0], 1.0 / tables[1]), (stops[0], stops[1])
+    """State (see `coupled_steps`) and elements at rest; `start`: (x, w), `stops`: of the play, of the stem.
+
+    What rests has stuck, and may have been left anywhere that the breakaway, too, can hold it.
+    """
+    grid, ends, inside = (tables[0], 1.0 / tables[1]), (stops[0], stops[1]), c[V_TARGET_STICKS] == 1.0
     elements = np.full(plays[0].size, start[1])
     x = max(stops[2], min(stops[3], start[0]))
     wide = min(wide, -c[V_OUTER]) if c[V_ON_STEM] > 0.0 else wide
@@ -43,9 +61,14 @@ def coupled_start(
         softer = _curve_at(x, place, bends[2])
     w = over = 0.0
     for j in range(elements.size):
-        bottom = softer * _curve_at(force - plays[0][j] - more, grid, tables[2])
-        top = softer * _curve_at(force + plays[0][j] + less, grid, tables[3])
+        down, up = force - plays[0][j] - more, force + plays[0][j] + less
+        bottom, top = softer * _curve_at(down, grid, tables[2]), softer * _curve_at(up, grid, tables[3])
         reach = max(bottom, min(top, elements[j]))
+        if c[V_BREAKAWAY] > 0.0:
+            low = softer * _curve_at(down - c[V_BREAKAWAY], grid, tables[2])
+            high = softer * _curve_at(up + c[V_BREAKAWAY], grid, tables[3])
+            stays = _held(bottom, low, inside, ends) <= elements[j] <= _held(top, high, inside, ends)
+            reach = elements[j] if stays else reach
         elements[j] = max(ends[0], min(ends[1], reach))
         w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
     return np.array([x, w, w, 1.0, 0.0, 0.0, 0.0, FOREVER, (1.0 - c[V_WITHIN]) * over, x]), elements
