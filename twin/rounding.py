@@ -46,19 +46,25 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
     lacking = rounding_bias(np.concatenate([r.position for r in recordings]), sensing.step)
     offs_in = [s * sensing.step for s in (0.0, -0.5, 0.5, -lacking, lacking)][: 5 if lacking > 0.0 else 3]
     options = [(Inserted(ROUNDS_BY, form, (off_in,)),) if off_in else () for off_in in offs_in]
-    told = lacking == 0.0 and not (sensing.sharp and _beside_zero(recordings, sensing.step))
-    stops = _telling_rows(channel, plant, sensing.step) if told else []
+    beside = sensing.sharp and _beside_zero(recordings, sensing.step)
+    stops = _telling_rows(channel, plant, sensing.step) if lacking == 0.0 else []
     if stops:
         # the model of another zero would start elsewhere, and stay there as long as the pressure lets it
         error = channel.residuals(plant)
-        errors = [np.array([np.mean(error[rows]) - off_in for rows in stops]) for off_in in offs_in]
+        errors = [_at_stops([error[rows] - off_in for rows in stops], beside, sensing.step) for off_in in offs_in]
     else:
         whole = [channel.residuals(Plant(plant.design, (*plant.inserted, *o)))[channel.use] for o in options]
         errors = whole if lacking > 0.0 else [_beyond(e, 0.5 * sensing.step) for e in whole]
     misfits = [float(np.mean(e**2)) for e in errors]
     best = min(range(len(options)), key=lambda k: misfits[k])
-    near = (stops or lacking > 0.0) and abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
+    means = lacking > 0.0 or (stops and not beside)
+    near = means and abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
     return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
+
+
+def _at_stops(errors: Sequence[FloatArray], beside: bool, step: float) -> FloatArray:
+    """What the rows at each stop are off by in the mean; with codes beside the stops, by what rounding cannot make."""
+    return _beyond(np.concatenate(errors), 0.5 * step) if beside else np.array([np.mean(e) for e in errors])
 
 
 def _beside_zero(recordings: Sequence[Recording], step: float) -> bool:

@@ -91,3 +91,18 @@ def test_a_stop_beside_the_steps_does_not_say_how_they_round(place: float) -> No
     seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), {"sensor_quantization": {}}, step_in)
     beside = replace(fine, position=step_in * (np.round(fine.position / step_in - place) + place))
     assert rounding_down([beside], Plant(DESIGN), seen) == ()
+
+
+@pytest.mark.parametrize(("rounds", "off"), [(np.round, 0.0), (np.floor, -0.5)])
+def test_a_stop_beside_the_steps_says_what_no_rounding_can_make(rounds: np.ufunc, off: float) -> None:
+    """Whatever else is wrong with the valve: here its curves are half a step from the design's."""
+    step_in, place = 0.02, 0.31
+    shift = 0.5 * step_in / DESIGN.compliance
+    moved = Plant(replace(DESIGN, a1=DESIGN.a1 + shift, a2=DESIGN.a2 + shift))
+    command = np.concatenate([np.repeat([3.0, 9.3, 10.4, 6.2, 3.0], 400), staircase()])
+    fine = trial_of(moved, command)[0].recording
+    none = np.zeros(fine.n, dtype=bool)
+    quantized: dict[str, dict[str, float]] = {"sensor_quantization": {}}
+    seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), quantized, step_in)
+    beside = replace(fine, position=step_in * (rounds(fine.position / step_in - place) + place))
+    assert sum(one.values[0] for one in rounding_down([beside], Plant(DESIGN), seen)) == pytest.approx(off * step_in)
