@@ -189,7 +189,9 @@ S_SINKS_S = S_WAVE + 1  # in which a loose core goes to the far end of its play 
 S_SLIPS = S_SINKS_S + 1  # share of the way of a quick stem that a slipping coupling loses when closing [-]
 S_SLIPS_OPEN = S_SLIPS + 1  # and opening
 S_SLIPS_ABOVE = S_SLIPS_OPEN + 1  # and the speed from which it slips [position/s]
-S_COUNT = S_SLIPS_ABOVE + 1
+S_LESS = S_SLIPS_ABOVE + 1  # by how much narrower than S_PLAY a worn linkage is at places from end to end [position]
+LESS = 4
+S_COUNT = S_LESS + LESS
 
 FOREVER = 1e30
 
@@ -228,9 +230,7 @@ def _valve() -> FloatArray:
     c[[V_RATE_CLOSE, V_RATE_OPEN, V_STEP_TIME_S, V_BREAKS_S]] = FOREVER
     c[[V_DRIFT_TAU_S, V_CREEP1_TAU_S, V_CREEP2_TAU_S, V_FORCE_CREEP_TAU_S, V_RELAX_TAU_S, V_STRIBECK_SPEED]] = 1.0
     c[V_HARD_LOW], c[V_HARD_HIGH] = -FOREVER, FOREVER
-    c[V_STEP_EASES_S] = 1.0
-    c[[V_GIVE_LOW, V_GIVE_HIGH]] = 1.0
-    c[V_TRAVEL] = 1.0
+    c[[V_STEP_EASES_S, V_GIVE_LOW, V_GIVE_HIGH, V_TRAVEL]] = 1.0
     return c
 
 
@@ -242,8 +242,6 @@ def neutral_sensor() -> FloatArray:
 @cache
 def _sensor() -> FloatArray:
     c = np.zeros(S_COUNT)
-    c[S_GAIN] = 1.0
-    c[S_DRIFT_TAU_S] = 1.0
-    c[S_TRAVEL] = 1.0
+    c[[S_GAIN, S_DRIFT_TAU_S, S_TRAVEL]] = 1.0
     c[S_CORE] = np.nan
     return c

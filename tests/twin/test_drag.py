@@ -47,3 +47,22 @@ def test_a_stem_that_opens_with_less_drag_is_told_from_other_lags() -> None:
     assert found.causes[0].form == "drag_each_way"
     assert found.causes[0].parameters["opening"].value == pytest.approx(-0.35, abs=0.02)
     assert found.causes[0].parameters["closing"].value == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_speed_of_its_own_each_way_is_not_that_of_the_lag() -> None:
+    """Half the lag's difference alone, half the speed's alone: each moves only what it is of."""
+    apart = "two_lags_and_rates_apart"
+    fast = np.diff(at_once(plant("before the lag", "asymmetric_damping", apart, (0.0, 0.2)), 0.005)) / 0.1
+    assert fast.max() == pytest.approx(0.8 * D.rate_limit, rel=1e-3)
+    assert fast.min() == pytest.approx(-1.2 * D.rate_limit, rel=1e-3)
+    one = plant("before the lag", "asymmetric_damping", apart, (0.2, 0.0))
+    other = plant("before the lag", "asymmetric_damping", "two_lags", (0.2,))
+    assert np.array_equal(one.coefficients(1.0).valve, other.coefficients(1.0).valve)
+
+
+@pytest.mark.thorough
+def test_lags_and_speeds_that_differ_by_their_own_are_found() -> None:
+    one = plant("before the lag", "asymmetric_damping", "two_lags_and_rates_apart", (-0.12, -0.06))
+    found = diagnose([a_record(one, seed=5)], D).diagnosis
+    assert [c.name for c in found.causes] == ["asymmetric_damping"]
+    assert found.causes[0].parameters["of_the_speeds"].value == pytest.approx(-0.06, abs=0.02)

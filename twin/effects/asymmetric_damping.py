@@ -44,6 +44,13 @@ def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_RATE_OPEN] /= 1.0 - values[0]
 
 
+def _lags_and_rates_apart(c: Coefficients, values: Sequence[float]) -> None:
+    # What bounds the speed (a vent that chokes, a booster's capacity) need not be what makes the lag.
+    _two_lags(c, values)
+    c.valve[V_RATE_CLOSE] *= 1.0 - values[1]
+    c.valve[V_RATE_OPEN] *= 1.0 + values[1]
+
+
 def _drag_each_way(c: Coefficients, values: Sequence[float]) -> None:
     # Friction that grows with speed takes pressure; what pulls against a stop has pressure to spare.
     c.valve[V_DRAG_CLOSE_S] += values[0] * c.design.tau_s
@@ -103,12 +110,16 @@ _ALIKE = "a damping that grows with the speed, the same both ways"
 _ASYMMETRY = _parameter(
     "asymmetry", "half the difference of the time constants over their mean, positive = closes slowly"
 )
+_SPEEDS = _parameter(
+    "of_the_speeds", "half the difference of the highest speeds over their mean, positive = closes slowly"
+)
 
 EFFECT = Effect(
     name="asymmetric_damping",
     stage="actuator",
     claim="The time constants closing and opening differ.",
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
+    "two_lags_and_rates: rate limit / (1 +- asymmetry), too; two_lags_and_rates_apart: (1 -+ of_the_speeds) of it; "
     "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
     "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit; "
     "orifice_within_stops: dx/dt = (clip(w') - x) / tau - drag dx/dt; "
@@ -118,6 +129,7 @@ EFFECT = Effect(
     forms=(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
+        Form("two_lags_and_rates_apart", (_ASYMMETRY, _SPEEDS), _lags_and_rates_apart),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
         Form("orifice_each_way", (_throttled("closing"), _throttled("opening")), _orifice),
         Form("orifice_within_stops", (_throttled("closing"), _throttled("opening")), _within(_orifice)),

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_PLAY, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_ZERO
+from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_ZERO
 
 _PLAY = Parameter(
     name="play",
@@ -61,6 +63,17 @@ _ABOVE = Parameter(
 )
 
 
+_WORN = tuple(
+    replace(_PLAY, name=name, starts=starts, doc=f"full width with the stem {where}")
+    for name, where, starts in (
+        ("open", "fully open", (0.002, 0.02)),
+        ("below_middle", "a third closed", (0.006,)),
+        ("above_middle", "two thirds closed", (0.006,)),
+        ("closed", "closed", (0.02, 0.002)),
+    )
+)
+
+
 def _apply(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_PLAY] = values[0]
 
@@ -80,6 +93,12 @@ def _sinks_back(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_SINKS_S] = -values[1]
 
 
+def _worn(c: Coefficients, values: Sequence[float]) -> None:
+    widest = max(values)
+    c.sensor[S_PLAY] = widest
+    c.sensor[S_LESS : S_LESS + LESS] = widest - np.asarray(values)
+
+
 def _slips(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_SLIPS, S_SLIPS_OPEN]] = values[:2]
     c.sensor[S_SLIPS_ABOVE] = values[2] * c.design.rate_limit
@@ -90,7 +109,8 @@ EFFECT = Effect(
     stage="sensor",
     claim="There is play between the stem and the LVDT core.",
     equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side; sinks: "
-    "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks; a coupling that slips has "
+    "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks; worn: play goes by x, "
+    "straight between thirds of the travel; a coupling that slips has "
     "no play, only told from what it resembles: dy = (1 - lost) dx above a speed",
     source="Nordin, Gutman, Automatica 38 (2002) 1633; Tao, Kokotovic, Adaptive Control of Systems with Actuator and "
     "Sensor Nonlinearities (Wiley 1996)",
@@ -99,6 +119,7 @@ EFFECT = Effect(
         Form("one_sided", (_ONE_SIDED,), _one_sided),
         Form("sinks", (_PLAY, _SINKS), _sinks),
         Form("sinks_back", (_PLAY, _SINKS), _sinks_back),
+        Form("worn", _WORN, _worn),
         Form(
             "slips",
             (_LOST, _LOST_OPEN, _ABOVE),

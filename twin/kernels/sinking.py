@@ -1,4 +1,7 @@
-"""A loose linkage between the stem and the core: the core goes along from the ends of the play, or sinks to one."""
+"""A loose linkage between the stem and the core: the core goes along from the ends of the play, or sinks to one.
+
+It may be worn where the stem is most, and tighter elsewhere.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +9,11 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+from twin.kernels.active import acts
 from twin.kernels.play import plain_play
-from twin.slots import S_PLAY, S_SINKS_S
+from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_TRAVEL
+
+_LESS = np.arange(S_LESS, S_LESS + LESS)
 
 
 def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> FloatArray:
@@ -15,7 +21,9 @@ def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> Flo
     if c[S_PLAY] <= 0.0:
         return stem
     core = np.empty_like(stem)
-    if c[S_SINKS_S] == 0.0:
+    if acts(c, _LESS):
+        _worn(stem, 0.5 * c[S_PLAY], 0.5 * c[_LESS], c[S_TRAVEL], start, core)
+    elif c[S_SINKS_S] == 0.0:
         plain_play(stem, 0.5 * c[S_PLAY], start, core)
     else:
         _sinking(t, stem, 0.5 * c[S_PLAY], c[S_SINKS_S], start, core)
@@ -24,13 +32,31 @@ def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> Flo
 
 def first_core(c: FloatArray, stem: float, core: float) -> float:
     """Where a core begins that is said to be at `core`; not a number: wherever it had the time to go."""
-    half = 0.5 * float(c[S_PLAY])
+    half = _half_at(stem, 0.5 * float(c[S_PLAY]), 0.5 * c[_LESS], float(c[S_TRAVEL]))
     return stem + sunk_by(c) if np.isnan(core) else max(stem - half, min(stem + half, core))
 
 
 def sunk_by(c: FloatArray) -> float:
     """How far from the stem a core stands that has had the time to sink to one end of the play [position]."""
     return float(np.copysign(0.5 * c[S_PLAY], c[S_SINKS_S])) if c[S_PLAY] > 0.0 and c[S_SINKS_S] != 0.0 else 0.0
+
+
+@njit(cache=True, inline="always", nogil=True, error_model="numpy")
+def _half_at(x: float, half: float, less: FloatArray, travel: float) -> float:
+    """Half the play with the stem at `x`; `less`: by how much narrower at places from end to end, straight between."""
+    q = min(max(x / travel, 0.0), 1.0) * (less.size - 1)
+    i = min(int(q), less.size - 2)
+    here: float = half - less[i] - (q - i) * (less[i + 1] - less[i])
+    return here
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _worn(stem: FloatArray, half: float, less: FloatArray, travel: float, start: float, out: FloatArray) -> None:
+    """Fills `out`: a core that the stem takes along from the ends of a play that goes by where the stem is."""
+    e = start
+    for f in range(stem.size):
+        here = _half_at(stem[f], half, less, travel)
+        e = out[f] = max(stem[f] - here, min(stem[f] + here, e))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
