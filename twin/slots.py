@@ -63,7 +63,9 @@ EP_SWING_SIN = 43  # and a quarter of the period later
 EP_CUT = 44  # supply that swings so and cuts the pressure off, as EP_CLIP does one that does not [pressure]
 EP_MIDDLE = 45  # where the stem is as EP_FULL_UP and EP_FULL_DOWN are the slopes [position]
 EP_DEAD_FALLS = 46  # by how much longer a falling command is delayed than EP_DEAD_S, or, < 0, shorter [s]
-EP_COUNT = 47
+EP_WANES = 47  # by what share the lag of a falling pressure is longer for each unit that it is below [1/pressure]
+EP_WANES_BELOW = 48  # this [pressure]
+EP_COUNT = 49
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -16,6 +16,8 @@ from twin.slots import (
     EP_QUICK,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
+    EP_WANES,
+    EP_WANES_BELOW,
 )
 
 
@@ -44,6 +46,14 @@ def _clogged(c: Coefficients, values: Sequence[float]) -> None:
     # A silencer full of dirt, or a screen, is turbulent: its pressure drop grows with the square of the flow.
     c.ep[EP_CLOG_UP] += max(-values[0], 0.0) * c.design.ep_tau_s
     c.ep[EP_CLOG_DOWN] += max(values[0], 0.0) * c.design.ep_tau_s
+
+
+def _waning(c: Coefficients, values: Sequence[float]) -> None:
+    # What exhausts is driven by its own pressure above the atmosphere's, which wanes; what fills, by the supply.
+    d = c.design
+    shut = d.a1 + d.travel / d.compliance
+    c.ep[EP_WANES] = values[0] / (shut - d.a2)
+    c.ep[EP_WANES_BELOW] = d.a2 + values[1] * (shut - d.a2)
 
 
 _CLOG = Parameter(
@@ -106,6 +116,26 @@ _CRACK = Parameter(
     doc="how far the pressure is above its goal where the quick exhaust begins to open",
     size=False,
 )
+_WANES = Parameter(
+    name="wanes",
+    kind="fraction",
+    lower=0.0,
+    upper=12.0,
+    starts=(0.2, 1.0),
+    scale=0.5,
+    doc="by what share the lag of a falling pressure grows from where the valve is shut to where it is open",
+)
+_BELOW = Parameter(
+    name="below",
+    kind="fraction",
+    lower=0.1,
+    upper=1.5,
+    starts=(0.5, 0.9),
+    scale=0.5,
+    doc="from which pressure on, as a share of the way from where the valve is open to where it is shut",
+    neutral=0.9,
+    size=False,
+)
 
 EFFECT = Effect(
     name="fill_exhaust_asymmetry",
@@ -116,7 +146,9 @@ EFFECT = Effect(
     "port_and_chamber: likewise, the other port lets 1 / (1 + clean |dirt|) through, "
     "air of the booster times 1 + room, as seen with the stem in the middle, filling as from its supply (ISO 6358); "
     "quick_exhaust: tau dp/dt = u - p, and - quick (p - u - crack) where that opens; "
-    "clogged: tau (1 + clog |dp/dt|) dp/dt = u - p falling, or rising where it is negative",
+    "clogged: tau (1 + clog |dp/dt|) dp/dt = u - p falling, or rising where it is negative; "
+    "waning: tau (1 + wanes (b - p) / (shut - open)) falling below b = open + below (shut - open), where open = a2 and "
+    "shut = a1 + travel / k",
     source="Richer, Hurmuzlu, J. Dyn. Syst. Meas. Control 122 (2000) 416 (filling and exhausting through orifices)",
     forms=(
         Form(
@@ -144,6 +176,7 @@ EFFECT = Effect(
         Form("port_and_chamber", (_MUCH_DIRT, _ROOM, _CLEAN), _port_and_chamber, by_pressure=True),
         Form("quick_exhaust", (_QUICK, _CRACK), _quick),
         Form("clogged", (_CLOG,), _clogged),
+        Form("waning", (_WANES, _BELOW), _waning),
     ),
     twins=("ep_rate_limit",),
     absorbs=("ep_tau",),

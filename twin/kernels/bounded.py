@@ -28,6 +28,8 @@ from twin.slots import (
     EP_TANK_CUTS,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
+    EP_WANES,
+    EP_WANES_BELOW,
     FOREVER,
 )
 
@@ -77,6 +79,16 @@ def _clogged_step(error: float, tau_s: float, clog: float, h: float) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _waned(p: float, v: float, h: float, rate: float, c: FloatArray) -> float:
+    """The rate of an exhaust that has less pressure to drive it the further the pressure has fallen, as it is in the
+    middle of the step."""
+    now = rate / (1.0 + c[EP_WANES] * max(c[EP_WANES_BELOW] - p, 0.0))
+    middle = v + (p - v) * np.exp(-0.5 * h * now)
+    waned: float = rate / (1.0 + c[EP_WANES] * max(c[EP_WANES_BELOW] - middle, 0.0))
+    return waned
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     """Pressure after `h` seconds of a lag toward `v`: with a band, a quick exhaust or a clog, and with slope limits."""
     mode, error, clog = c[EP_BAND_MODE], abs(v - p), c[EP_CLOG_UP if v > p else EP_CLOG_DOWN]
@@ -85,6 +97,8 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
     if v > p and c[EP_SUBSONIC] > 0.0:
         rate *= _let_through(p, v, h * rate, c)
+    elif v < p and c[EP_WANES] > 0.0:
+        rate = _waned(p, v, h, rate, c)
     if mode == 3.0:
         error = _edged_step(error, c[EP_BAND], c[EP_LEAK] * rate, rate, h)
     elif v < p and c[EP_QUICK] > 0.0:

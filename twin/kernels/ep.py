@@ -47,12 +47,13 @@ from twin.slots import (
     EP_TANK,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
+    EP_WANES,
     EP_ZERO,
     FOREVER,
 )
 
 #: What makes the lag another one, besides a band and limits.
-_OTHER_LAGS = np.array([EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN])
+_OTHER_LAGS = np.array([EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN, EP_WANES])
 
 
 def ep_kernel(
