@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -39,17 +40,56 @@ def design_for(
     """The design in the recordings' units, and where it is from: a file, `golden` recordings of the healthy
     machine, the defaults (records that were written in psi and in), or the records.
 
+    It says in which units to speak of it: in those of the file, or else in those that the recordings were written in.
+
     Raises: `BadInput` or `JobFailed` when it cannot be had, with what to do.
     """
-    from control.design import DesignModel, load_design
+    from logs.spoken import spoken_by
+
+    every = [*recordings, *golden]
+    pressure_unit, position_unit = common_units(every)
+    if path is not None:
+        return _of_file(path, pressure_unit, position_unit), str(path)
+    model, origin = _without_file(recordings, golden, pressure_unit, position_unit)
+    return replace(model, spoken=spoken_by(every)), origin
+
+
+def bench_design(path: Path) -> DesignModel:
+    """The design of a file in psi and in, in which benches are commanded; one in percent stays, to be refused.
+
+    Raises: `BadInput` naming the file.
+    """
+    from control.design import load_design
+    from logs.units import PERCENT, plain_name
     from twin.model_units import in_units_of
 
-    pressure_unit, position_unit = common_units([*recordings, *golden])
-    if path is not None:
-        try:
-            return in_units_of(load_design(path), pressure_unit, position_unit), str(path)
-        except BadInput as error:
-            raise error if str(error).startswith(str(path)) else BadInput(f"{path}: {error}") from error
+    given = load_design(path)
+    if PERCENT in (plain_name(given.pressure_unit), plain_name(given.position_unit)):
+        return given
+    try:
+        return in_units_of(given, "psi", "in")
+    except BadInput as error:
+        raise BadInput(f"{path}: {error}") from error
+
+
+def _of_file(path: Path, pressure_unit: str, position_unit: str) -> DesignModel:
+    from control.design import load_design
+    from logs.spoken import spoken_in
+    from twin.model_units import in_units_of
+
+    given = load_design(path)
+    try:
+        model = in_units_of(given, pressure_unit, position_unit)
+        return replace(model, spoken=spoken_in(given.pressure_unit, given.position_unit))
+    except BadInput as error:
+        raise error if str(error).startswith(str(path)) else BadInput(f"{path}: {error}") from error
+
+
+def _without_file(
+    recordings: Sequence[Recording], golden: Sequence[Recording], pressure_unit: str, position_unit: str
+) -> tuple[DesignModel, str]:
+    from control.design import DesignModel
+
     if golden:
         return _identified(golden, pressure_unit, position_unit), "identified from the healthy recordings"
     if (pressure_unit, position_unit) == ("psi", "in") and not any(_of_another_house(r) for r in recordings):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import tomlkit
@@ -17,13 +17,15 @@ from pydantic_core import ErrorDetails
 
 from hal.errors import BadInput
 from hal.toml_file import read_toml
+from logs.spoken import HOUSE, Spoken
 
 
 @dataclass(frozen=True, slots=True)
 class DesignModel:
     """The thesis's valve as seven numbers, in the units named by `pressure_unit`, `position_unit` and seconds.
 
-    `effects` holds the parameters of effects added by a diagnosis: effect name -> parameter name -> value.
+    `effects` holds the parameters of effects added by a diagnosis: effect name -> parameter name -> value. `spoken`:
+    the units in which sizes are said to whoever gave the design, or the records.
     """
 
     ep_tau_s: float = 0.30
@@ -36,6 +38,7 @@ class DesignModel:
     pressure_unit: str = "psi"
     position_unit: str = "in"
     effects: Mapping[str, Mapping[str, float | str]] = field(default_factory=dict)
+    spoken: Spoken = field(default=HOUSE, compare=False)
 
     @property
     def deadband(self) -> float:
@@ -46,6 +49,10 @@ class DesignModel:
     def offset(self) -> float:
         """Middle of the two curves in pressure, (a1 + a2) / 2."""
         return 0.5 * (self.a1 + self.a2)
+
+    def to_plain(self) -> dict[str, object]:
+        """What makes the model, for a record's start document; how one speaks of it is no part of it."""
+        return {name: value for name, value in asdict(self).items() if name != "spoken"}
 
 
 def check_for_control(design: DesignModel) -> None:

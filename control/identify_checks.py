@@ -14,6 +14,7 @@ from control.identify_tracks import FEWEST_ROWS
 from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput, JobFailed
 from logs.recording import FloatArray, Recording
+from logs.spoken import of_its_file
 from logs.units import PERCENT
 
 LEAST_S = 10.0 * ROUGH_S  # a record that is over sooner has no time for a first guess
@@ -131,7 +132,8 @@ def _refuse_falling(tracks: Sequence[Track], recordings: Sequence[Recording]) ->
     position = np.concatenate([t.position[t.good] for t in tracks])
     pressure = np.concatenate([t.pressure[t.grid.first][t.good] for t in tracks])
     if float(np.corrcoef(pressure, position)[0, 1]) < FALLS:
-        unit, top = recordings[0].position_unit, max(float(np.nanmax(each.position)) for each in recordings)
+        file, ours = of_its_file(recordings[0]), recordings[0].position_unit
+        unit, top = file.unit(ours), file.value(max(float(np.nanmax(each.position)) for each in recordings), ours)
         raise BadInput(
             f"{_names(recordings)}: the position falls as the {_cause(recordings)} rises; 0 must be the open end, so "
             f"turn it round, as in --units 'position={unit}(0..T=T..0 {unit})' with the travel, some {top:.3g}, for T"

@@ -90,6 +90,11 @@ class _Cutter:
     def header(self, role: Role) -> str:
         return self.signals.headers[role]
 
+    def raw(self, role: Role) -> Callable[[float], float]:
+        """How a value in house units stands in the file, under the role's header."""
+        how = self.signals.conversions[role]
+        return lambda value: float(value if how.scale == 1.0 and how.shift == 0.0 else (value - how.shift) / how.scale)
+
 
 def _times(signals: Signals, where: str, notes: list[DataNote]) -> times.Times:
     how = signals.conversions["time"]
@@ -107,7 +112,8 @@ def _command(cut: _Cutter, where: str, notes: list[DataNote]) -> FloatArray:
     values, found = quality.held(name, values, cut.rows)
     notes += found
     if quality.constant(values):
-        notes.append(DataNote(f"{name}: constant at {values[0]:.6g}", "kept; nothing can be learned of the curves"))
+        what = f"{name}: constant at {cut.raw('command')(values[0]):.6g}"
+        notes.append(DataNote(what, "kept; nothing can be learned of the curves"))
     return values
 
 
@@ -117,9 +123,9 @@ def _position(cut: _Cutter, where: str, notes: list[DataNote]) -> FloatArray:
     if not np.isfinite(values).any():
         raise BadInput(f"{where}: column '{name}' (position) holds no number; name the right one with --map")
     values, found = quality.finite(name, values, cut.rows)
-    notes += [*found, *quality.clipped(name, values, cut.rows)]
+    notes += [*found, *quality.clipped(name, values, cut.rows, cut.raw("position"))]
     if quality.constant(values):
-        at = values[np.isfinite(values)][0]
+        at = cut.raw("position")(values[np.isfinite(values)][0])
         notes.append(DataNote(f"{name}: constant at {at:.6g}", "kept; the valve never moved, or the LVDT is not read"))
     return values
 
@@ -136,11 +142,11 @@ def _pressure(cut: _Cutter, still: bool, notes: list[DataNote]) -> FloatArray | 
         notes.append(DataNote(f"{name}: no number in it", "treated as not measured", values.size, 1))
         return None
     if quality.constant(values) and not still:
-        what = f"{name}: constant at {values[good][0]:.6g} while the command moves"
+        what = f"{name}: constant at {cut.raw('pressure')(values[good][0]):.6g} while the command moves"
         notes.append(DataNote(what, "treated as not measured", values.size, 1))
         return None
     values, found = quality.finite(name, values, cut.rows)
-    notes += [*found, *quality.clipped(name, values, cut.rows)]
+    notes += [*found, *quality.clipped(name, values, cut.rows, cut.raw("pressure"))]
     return values
 
 

@@ -12,6 +12,7 @@ from logs.assemble import Signals, assemble
 from logs.layout import is_run_folder
 from logs.recording import CommandTiming, DataNote, Recording
 from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pairs, split_header
+from logs.spoken import WRITTEN
 from logs.table import Table, read_table
 from logs.units import HOUSE_UNIT, PERCENT, conversion, plain_name
 
@@ -115,7 +116,8 @@ def _load_table(
         notes=table.notes,
         locate=table.locate,
     )
-    meta = {"file": str(path), "foreign": tuple(r for r, unit in stated.items() if _foreign(signals, r, unit))}
+    foreign = tuple(role for role, unit in stated.items() if _foreign(signals, role, unit))
+    meta = {"file": str(path), "foreign": foreign, WRITTEN: stated}
     return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta=meta)
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from hal.sample import Quality
@@ -44,8 +46,11 @@ def constant(values: FloatArray) -> bool:
     return good.size == 0 or bool(np.all(good == good[0]))
 
 
-def clipped(name: str, values: FloatArray, rows: Rows) -> list[DataNote]:
-    """Says where a signal that is noisy elsewhere sits flat at the end of its range: a converter at its limit."""
+def clipped(name: str, values: FloatArray, rows: Rows, raw: Callable[[float], float] = float) -> list[DataNote]:
+    """Says where a signal that is noisy elsewhere sits flat at the end of its range: a converter at its limit.
+
+    `raw` is what a value is in the file, under whose header it is told.
+    """
     good = np.isfinite(values)
     if good.sum() < 4 * CLIP_RUN or constant(values):
         return []
@@ -57,7 +62,7 @@ def clipped(name: str, values: FloatArray, rows: Rows) -> list[DataNote]:
         noisy = others.size > CLIP_RUN and np.mean(np.diff(others) == 0) < FLAT_SHARE
         if noisy and at_end.sum() >= CLIP_SHARE * values.size and _longest(at_end) >= CLIP_RUN:
             first = int(rows[int(np.argmax(at_end))]) + 1
-            what = f"{name}: flat at its {word} value {end:.6g}, clipped or at an end stop"
+            what = f"{name}: flat at its {word} value {raw(end):.6g}, clipped or at an end stop"
             notes.append(DataNote(what, "kept as it is", int(at_end.sum()), first))
     return notes
 

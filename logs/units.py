@@ -124,6 +124,14 @@ def plain_name(text: str) -> str:
     return _ALIASES.get(name.lower(), name)
 
 
+def size_unit(text: str) -> str:
+    """The unit in which a size is said where a column is in `text`: of a range its own, of an absolute pressure the
+    gauge's."""
+    ranged = _RANGE.fullmatch(text.strip())
+    name = plain_name(ranged["unit"] if ranged is not None else text)
+    return _ABSOLUTE.get(name.lower(), name)
+
+
 def _from_range(found: re.Match[str], text: str, quantity: Quantity) -> Conversion:
     signal = plain_name(found["signal"])
     if found["a"] is None:

@@ -13,6 +13,7 @@ import numpy as np
 from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput
 from logs.recording import DataNote, FloatArray, Recording
+from logs.spoken import of_its_file
 from twin.noise.model import NoiseModel
 from twin.plant import Plant
 from twin.simulate import simulate_recording
@@ -62,10 +63,11 @@ def admit(recordings: Sequence[Recording], plant: Plant, noise: NoiseModel) -> l
         _refuse_absurd(recordings, plant, names)
     largest = max(motions, key=lambda m: m.predicted)
     if not still and largest.predicted > PREDICTED * plant.design.travel and largest.together < _CONTRARY:
-        unit, travel = plant.design.position_unit, plant.design.travel
+        file, unit = of_its_file(recordings[0]), plant.design.position_unit
+        travel, unit = file.value(plant.design.travel, unit), file.unit(unit)
         raise BadInput(
             f"{names}: the position falls as the command rises, but 0 must be the open end; turn it round, "
-            f"as in --units 'position={unit}(0..{travel:g}={travel:g}..0 {unit})'"
+            f"as in --units 'position={unit}(0..{travel:.6g}={travel:.6g}..0 {unit})'"
         )
     return notes
 
@@ -162,17 +164,19 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
     """Readings many travels away, or commands many spans beyond the curves: a wrong column or unit."""
     d = plant.design
     readings = np.concatenate([r.position[np.isfinite(r.position)] for r in recordings])
-    x, p = d.position_unit, d.pressure_unit
+    x, p = (d.spoken.unit(unit) for unit in (d.position_unit, d.pressure_unit))
     low, middle, high = np.percentile(readings, (5.0, 50.0, 95.0))
     if high - low > _ABSURD * d.travel or abs(middle) > _ABSURD * d.travel:
+        low, high, travel = (d.spoken.value(v, d.position_unit) for v in (low, high, d.travel))
         raise BadInput(
-            f"{names}: positions of {low:.3g} to {high:.3g} {x} do not belong to a travel of {d.travel:.3g} {x}; "
+            f"{names}: positions of {low:.3g} to {high:.3g} {x} do not belong to a travel of {travel:.3g} {x}; "
             f"check the column (--map position=...) and its unit (--units position=mm)"
         )
     closed = d.a1 + d.travel / d.compliance
     low, middle, high = np.percentile(np.concatenate([r.command for r in recordings]), (5.0, 50.0, 95.0))
     if middle > _ABSURD * closed > 0.0 or high < d.a2 / _ABSURD:
+        low, high, opens, closed = (d.spoken.value(v, d.pressure_unit) for v in (low, high, d.a2, closed))
         raise BadInput(
-            f"{names}: commands of {low:.3g} to {high:.3g} {p} do not belong to curves between {d.a2:.3g} and "
+            f"{names}: commands of {low:.3g} to {high:.3g} {p} do not belong to curves between {opens:.3g} and "
             f"{closed:.3g} {p}; check the column (--map command=...) and its unit (--units command=kPa)"
         )

@@ -54,6 +54,7 @@ def assembled(
         effects_tested=(*limits, *smallest_seen(case.noise, case.scales, case.travel)),
         structure=tuple(describe(case.signals)),
         noise=_noise(case),
+        spoken=case.scales.spoken,
         version=_version(),
     )
     return replace(diagnosis, statement=statement(diagnosis))

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from logs.recording import DataNote, FloatArray
+from logs.spoken import HOUSE, Spoken
 from twin.case import Case
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
@@ -53,8 +54,8 @@ def by_slips(case: Case, result: StageResult, unexplained: bool) -> StageResult 
     return None if found is None else replace(result, decisions=(*result.decisions[:-1], found))
 
 
-def slips_note(result: StageResult, pressure_unit: str) -> list[DataNote]:
-    """What to say where a cause was recognised by its slips."""
+def slips_note(result: StageResult, pressure_unit: str, spoken: Spoken = HOUSE) -> list[DataNote]:
+    """What to say where a cause was recognised by its slips; `spoken`: in which units."""
     decision = result.decisions[-1]
     if decision.slips is None:
         return []
@@ -62,7 +63,8 @@ def slips_note(result: StageResult, pressure_unit: str) -> list[DataNote]:
     what = f"the stem stands and jumps {seen.count} times, and no model says when"
     handled = (
         f"{name} was recognised by how often and how far: its model jumps {model.count} times, by "
-        f"{model.typical:.2g} {pressure_unit} in the median instead of {seen.typical:.2g}, and no cause without jumps "
+        f"{spoken.text(model.typical, pressure_unit, 2)} in the median instead of "
+        f"{spoken.value(seen.typical, pressure_unit):.2g}, and no cause without jumps "
         "that leaves less makes so many; what it leaves of the error is no measure of it"
     )
     return [DataNote(what, handled)]

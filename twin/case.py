@@ -109,6 +109,7 @@ def make_case(
         pressure_unit=design.pressure_unit,
         position_unit=design.position_unit,
         doubt=doubt,
+        spoken=design.spoken,
     )
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))

@@ -196,7 +196,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     noise = estimate_noise(recordings)
     if not repeats:
         noise = replace(noise, position=estimate_noise(recordings, repeats=False).position)
-    recordings, blurred = on_their_steps(recordings, noise.position.sigma)
+    recordings, blurred = on_their_steps(recordings, noise.position.sigma, plant.design.spoken)
     noise = estimate_noise(recordings) if blurred else noise
     notes += [*blurred, *admit(recordings, plant, noise)]
     known.recordings, known.notes, known.noise = tuple(recordings), list(notes), noise
@@ -224,7 +224,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
     known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing), *heavy_tail(sensing)]
-    known.notes += [recorder_note(recordings, sensing.step)] if sensing.recorded else []
+    known.notes += [recorder_note(recordings, sensing.step, design.spoken)] if sensing.recorded else []
     return case, look, sensing, tuple(late)
 
 

@@ -1,8 +1,8 @@
 """The answer of a diagnosis: where, which, how far, how sure, what next; and its JSON.
 
 Everything here is data. The keys that scripts rely on are those of the interfaces page; keys beyond them
-(`statement`, `gap_by_condition`, `effects_tested`, `residual_signature`, `structure`, `noise`, `closed_loop`,
-`complete`, `incomplete_because`, `interrupted`, a cause's `form`, a candidate's `rejected`) are free.
+(`statement`, `sentences_in`, `gap_by_condition`, `effects_tested`, `residual_signature`, `structure`, `noise`,
+`closed_loop`, `complete`, `incomplete_because`, `interrupted`, a cause's `form`, a candidate's `rejected`) are free.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Literal
 
 from logs.recording import DataNote
+from logs.spoken import HOUSE, Spoken
 from twin.strict import json_ready
 
 Verdict = Literal["no_gap", "parameter", "effect", "effects", "unexplained"]
@@ -125,6 +126,7 @@ class Diagnosis:
     """The verdict on a set of recordings. `statement` is the sentence an operator reads first.
 
     `incomplete`: why this is no whole answer, empty if it is one; the verdict may then be nothing but a place holder.
+    `spoken`: the units that sizes have in its sentences; its numbers have those of the records.
     """
 
     verdict: Verdict
@@ -143,6 +145,7 @@ class Diagnosis:
     closed_loop: Mapping[str, object] = field(default_factory=dict)
     version: str = ""
     incomplete: str = ""
+    spoken: Spoken = HOUSE
     gap_by_condition: Gap | None = None
 
     def to_json(self) -> dict[str, object]:
@@ -163,6 +166,7 @@ class Diagnosis:
             "structure": self.structure,
             "noise": self.noise,
             "closed_loop": self.closed_loop,
+            "sentences_in": self.spoken,
             "version": self.version,
             "complete": not self.incomplete,
             "incomplete_because": self.incomplete or None,

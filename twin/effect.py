@@ -17,6 +17,7 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
+from logs.spoken import HOUSE, Spoken
 from twin.place import Place
 from twin.slots import GRID, V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW, neutral_ep, neutral_sensor, neutral_valve
 
@@ -65,7 +66,7 @@ class Parameter:
 class Scales:
     """What turns the thesis's psi, in into a record's units: a percent bench has other magnitudes, the same physics.
 
-    `doubt`: relative standard deviation of a design number that nobody accuses.
+    `doubt`: relative standard deviation of a design number that nobody accuses. `spoken`: units of what is said.
     """
 
     pressure: float = 1.0
@@ -74,6 +75,7 @@ class Scales:
     pressure_unit: str = "psi"
     position_unit: str = "in"
     doubt: float = 0.01
+    spoken: Spoken = HOUSE
 
     def factor(self, kind: Kind) -> float:
         """Multiplier from reference units to record units."""

@@ -73,7 +73,7 @@ class Hearing:
     def notes(self, result: StageResult, judgement: Judgement, parts: GapParts) -> list[DataNote]:
         """What has to be said of how it was judged."""
         tied = tied_note([c.name for c in judgement.causes], self.case.base, parts.driven)
-        return tied + slips_note(result, self.case.scales.pressure_unit)
+        return tied + slips_note(result, self.case.scales.pressure_unit, self.case.scales.spoken)
 
     def _heard(
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float

@@ -42,6 +42,34 @@ def in_units_of(design: DesignModel, pressure_unit: str, position_unit: str, rem
     )
 
 
+def as_spoken(design: DesignModel) -> DesignModel:
+    """The same valve in the units in which it is spoken of, for a file: without the last digits of the factors."""
+    spoken = design.spoken
+    if spoken.is_house:
+        return design
+    p, x = design.pressure_unit, design.position_unit
+    return replace(
+        design,
+        a1=spoken.written(design.a1, p),
+        a2=spoken.written(design.a2, p),
+        compliance=spoken.written(design.compliance, f"{x}/{p}"),
+        rate_limit=spoken.written(design.rate_limit, f"{x}/s"),
+        travel=spoken.written(design.travel, x),
+        pressure_unit=spoken.unit(p),
+        position_unit=spoken.unit(x),
+        effects={name: _spoken(name, table, design) for name, table in design.effects.items()},
+    )
+
+
+def _spoken(name: str, table: Mapping[str, float | str], design: DesignModel) -> dict[str, float | str]:
+    scales = Scales(pressure_unit=design.pressure_unit, position_unit=design.position_unit)
+    units = {p.name: scales.unit(p.kind) for form in effect(name).forms for p in form.parameters}
+    return {
+        key: design.spoken.written(value, units[key]) if key in units and isinstance(value, float | int) else value
+        for key, value in table.items()
+    }
+
+
 def _factor(unit: str, wanted: str, quantity: Quantity, full: float, remedy: str) -> float:
     """`full`: what 100 % probably is, in `unit`, for the remedy."""
     if plain_name(unit) == plain_name(wanted):

@@ -10,18 +10,18 @@ from collections.abc import Collection
 
 from control.design import DesignModel
 from logs.recording import DataNote
-from twin.fit.numbers import nominals, reference
+from twin.fit.numbers import nominals, reference, unit
 
 #: A move is told from so much of the number on (of a quarter of the span, where the number itself is less).
 _FAR = 0.05
-_UNITS = {"deadband": "{p}", "offset": "{p}", "compliance": "{x}/{p}", "tau": "s", "rate_limit": "{x}/s", "ep_tau": "s"}
 
 
 def moved_numbers(design: DesignModel, updated: DesignModel, accused: Collection[str]) -> list[DataNote]:
     """One note for what moved far; `accused`: names of causes."""
     given, got = nominals(design), nominals(updated)
+    spoken, units = design.spoken, {name: unit(design, name) for name in given}
     words = [
-        f"{name} {got[name]:.4g} instead of {given[name]:.4g} {_unit(design, name)}"
+        f"{name} {spoken.value(got[name], units[name]):.4g} instead of {spoken.text(given[name], units[name], 4)}"
         for name in given
         if f"parameter:{name}" not in accused and abs(got[name] - given[name]) > _FAR * reference(design, name)
     ]
@@ -29,7 +29,3 @@ def moved_numbers(design: DesignModel, updated: DesignModel, accused: Collection
         return []
     handled = "re-tuned with the rest and not accused: what the record asks of it beside what is said, and no verdict"
     return [DataNote(f"the updated model has {', '.join(words)}", handled)]
-
-
-def _unit(design: DesignModel, name: str) -> str:
-    return _UNITS[name].format(p=design.pressure_unit, x=design.position_unit)

@@ -100,6 +100,7 @@ def known_so_far(known: Known, weights: Weights) -> Diagnosis | None:
         data_quality=(*case.notes, *known.notes, _cut_short(known)),
         residual_signature={"interrupted_at": known.stage},
         structure=tuple(describe(case.signals)),
+        spoken=case.scales.spoken,
         incomplete=f"interrupted at {known.stage}",
     )
     judgement = known.judgement

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import DataNote, FloatArray, Recording
+from logs.spoken import HOUSE, Spoken
 from twin.noise.lattice import lattice_step
 
 #: Round numbers, and how near to one a step has to be, as a share of it.
@@ -30,10 +31,11 @@ def rounded_by_recorder(recordings: Sequence[Recording], step: float, travel: fl
     return step > 0.0 and step < _COARSEST * travel and round_one and all(_alike(r, step) for r in recordings)
 
 
-def recorder_note(recordings: Sequence[Recording], step: float) -> DataNote:
-    """What is said of such steps."""
+def recorder_note(recordings: Sequence[Recording], step: float, spoken: Spoken = HOUSE) -> DataNote:
+    """What is said of such steps, and in which units."""
     rows = sum(r.n for r in recordings)
-    what = f"positions are stored in steps of {step:.3g} {recordings[0].position_unit}, and the commands are no finer"
+    size = spoken.text(step, recordings[0].position_unit, 3)
+    what = f"positions are stored in steps of {size}, and the commands are no finer"
     return DataNote(what, "taken for the recorder's rounding: noise, and no fault of the gauge", rows)
 
 

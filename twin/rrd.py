@@ -55,7 +55,9 @@ def write_rrd(diagnosis: Diagnosis, series: Series, path: Path) -> Path:
     plane = _plane(series)
     time = series.run_time_s
     stream.send_blueprint(_blueprint(plane, float(time[-1])))
-    stream.log("/story", rr.TextDocument(story(diagnosis), media_type=rr.MediaType.MARKDOWN), static=True)
+    stream.log(
+        "/story", rr.TextDocument(story(diagnosis, series.position_unit), media_type=rr.MediaType.MARKDOWN), static=True
+    )
     _send_lines(stream, diagnosis, series, time)
     _send_states(stream, diagnosis, series, time)
     _send_plane(stream, plane, series, time)

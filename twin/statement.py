@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import replace
 
+from logs.spoken import Spoken
 from twin.catalog import effects
 from twin.diagnosis import Cause, Diagnosis, Estimate, Gap
 
@@ -38,7 +39,7 @@ def statement(diagnosis: Diagnosis) -> str:
                 f"{_looks_like(diagnosis)}."
             )
         return f"Unexplained: {_off(g)}{_looks_like(diagnosis)}."
-    names = " and ".join(_named(cause) for cause in diagnosis.causes)
+    names = " and ".join(_named(cause, diagnosis.spoken) for cause in diagnosis.causes)
     closed = g.reducible_closed
     share = f", which closes {_share(closed.value)} of what noise does not account for" if closed else ""
     off = "A design number is off" if len(diagnosis.causes) == 1 else "Design numbers are off"
@@ -97,19 +98,19 @@ def _at_most(diagnosis: Diagnosis) -> str:
     return " or less: nothing shows it apart from the motion" if seems else ""
 
 
-def _named(cause: Cause) -> str:
+def _named(cause: Cause, spoken: Spoken) -> str:
     """The cause with its sizes; of a curve that many numbers give (`zero_1`, `zero_2`, ...) the largest."""
     curve = [e for name, e in cause.parameters.items() if _KNOT.search(name)]
-    told = [f"{name} {_sized(e)}" for name, e in _sizes(cause).items()]
-    told += [f"up to {_sized(max(curve, key=lambda e: abs(e.value)))}"] if curve else []
+    told = [f"{name} {_sized(e, spoken)}" for name, e in _sizes(cause).items()]
+    told += [f"up to {_sized(max(curve, key=lambda e: abs(e.value)), spoken)}"] if curve else []
     plain = cause.name.removeprefix("parameter:")
     return f"{plain} ({', '.join(told)}; probability {cause.probability:.2f})" if told else plain
 
 
-def _sized(one: Estimate) -> str:
+def _sized(one: Estimate, spoken: Spoken) -> str:
     """The number with its unit; 0 for what is nothing beside its own doubt."""
     nothing = abs(one.value) < _NOTHING * (one.ci95[1] - one.ci95[0])
-    return f"{0.0 if nothing else one.value:.3g} {'' if one.unit == '1' else one.unit}".rstrip()
+    return spoken.text(0.0 if nothing else one.value, one.unit, 3)
 
 
 def _sizes(cause: Cause) -> Mapping[str, Estimate]:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from logs.recording import DataNote, FloatArray
+from logs.spoken import HOUSE, Spoken
 from twin.fit.trial import Trial
 from twin.stages import StageResult
 
@@ -46,11 +47,12 @@ def swing_in(result: StageResult) -> Swing | None:
     return None
 
 
-def swing_note(swing: Swing, unit: str) -> DataNote:
-    """What an operator should look at."""
+def swing_note(swing: Swing, unit: str, spoken: Spoken = HOUSE) -> DataNote:
+    """What an operator should look at; `unit`: the amplitude's, `spoken`: the units that it is said in."""
     look = "cable, screen and supply of the sensor" if swing.signal == "position" else "air supply, regulator and tube"
+    size = spoken.text(swing.amplitude, unit, 2)
     return DataNote(
-        f"the {swing.signal} swings by itself, {swing.amplitude:.2g} {unit} at {swing.frequency_hz:.3g} Hz as sampled: "
+        f"the {swing.signal} swings by itself, {size} at {swing.frequency_hz:.3g} Hz as sampled: "
         f"{100.0 * swing.share:.0f} % of what the design misses",
         f"taken for noise, or for unexplained where nothing else is; look at {look}",
         0,

@@ -51,7 +51,7 @@ class Unrest:
         if self.swing is None:
             return notes
         units = {"position": case.scales.position_unit, "pressure": case.scales.pressure_unit}
-        return [swing_note(self.swing, units[self.swing.signal]), *notes]
+        return [swing_note(self.swing, units[self.swing.signal], case.scales.spoken), *notes]
 
 
 def unrest(case: Case, result: StageResult, margin_position: float) -> Unrest:
@@ -94,7 +94,7 @@ def comes_and_goes(residuals: FloatArray, trials: Sequence[Trial]) -> bool:
 
 def _note(size: float, case: Case) -> DataNote:
     design = case.base.design
-    pressure = f"{size / design.compliance:.2g} {design.pressure_unit}"
+    pressure = design.spoken.text(size / design.compliance, design.pressure_unit, 2)
     return DataNote(
         what=f"the pressure is off by about {pressure} in a way that no cause explains, and no command was repeated",
         handled="taken as the converter's own wandering and counted as noise; a repeat of the commands would tell",

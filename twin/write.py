@@ -9,9 +9,12 @@ import numpy as np
 
 from control.design import DesignModel, save_design
 from logs.recording import FloatArray
+from twin.answered import answered, series_answered
 from twin.diagnose import Outcome
 from twin.diagnosis import Diagnosis, write_diagnosis
 from twin.files import FILES
+from twin.model_units import as_spoken
+from twin.next.file import explained
 from twin.report.page import write_report
 from twin.report.series import Series
 from twin.rrd import write_rrd
@@ -26,14 +29,17 @@ def write_outcome(outcome: Outcome, folder: Path, progress: Progress) -> None:
     """
     clear(folder)
     write_diagnosis(outcome.diagnosis, folder / "diagnosis.json")
-    save_design(outcome.model, folder / "model.toml", outcome.diagnosis.statement, outcome.effect_units)
+    spoken = outcome.model.spoken
+    units = {name: {key: spoken.unit(u) for key, u in table.items()} for name, table in outcome.effect_units.items()}
+    save_design(as_spoken(outcome.model), folder / "model.toml", outcome.diagnosis.statement, units)
     if outcome.next_file is not None:
-        (folder / "next.toml").write_text(outcome.next_file, encoding="utf-8")
-    series = series_of(outcome)
+        (folder / "next.toml").write_text(explained(outcome.next_file, spoken), encoding="utf-8")
+    series = series_answered(series_of(outcome), spoken)
+    shown = answered(outcome.diagnosis, outcome.model.pressure_unit, outcome.model.position_unit)
     progress("report", 0.2)
-    write_report(outcome.diagnosis, series, folder / "report.html")
+    write_report(shown, series, folder / "report.html")
     progress("report", 0.8)
-    write_rrd(outcome.diagnosis, series, folder / "diagnosis.rrd")
+    write_rrd(shown, series, folder / "diagnosis.rrd")
     progress("report", 1.0)
 
 
@@ -41,7 +47,7 @@ def write_known(diagnosis: Diagnosis, design: DesignModel, folder: Path) -> None
     """Writes what an interrupted diagnosis knew, and the design as it was given, and nothing else."""
     clear(folder)
     write_diagnosis(diagnosis, folder / "diagnosis.json")
-    save_design(design, folder / "model.toml", diagnosis.statement)
+    save_design(as_spoken(design), folder / "model.toml", diagnosis.statement)
 
 
 def clear(folder: Path) -> None:

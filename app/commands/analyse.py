@@ -46,8 +46,9 @@ def command(
     from app.gains import parse_sweep, write_csv
     from app.hunting import gains, study
     from app.progress import counted
+    from app.recordings import bench_design
     from control.analysis.loop import LinearLoop
-    from control.design import DesignModel, check_for_control, load_design
+    from control.design import DesignModel, check_for_control
     from hal.errors import BadInput
 
     if law is None and (sweep or modbus):
@@ -55,7 +56,7 @@ def command(
     if law != "pi" and (ki or (sweep or "").startswith("ki=")):
         raise BadInput("only --law pi has a ki")
     _check_targets(csv_file, plot, design)
-    model = load_design(design) if design else DesignModel()
+    model = bench_design(design) if design else DesignModel()
     check_for_control(model)
     base = LinearLoop("p", kp, ki if law == "pi" else 0.0, model.ep_tau_s, model.tau_s, dead_time, period, late)
     swept = parse_sweep(sweep) if sweep else None

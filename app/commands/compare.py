@@ -66,11 +66,12 @@ def command(
     from app.fit_picture import check_target
     from app.options import listed
     from app.progress import counted
+    from app.recordings import bench_design
     from app.rivals import run_all
     from control.compare import as_json as everything
     from control.compare import jobs
     from control.controller import controller_class, controller_names
-    from control.design import DesignModel, load_design
+    from control.design import DesignModel
     from control.held_out import FIRST_SEED
     from control.metrics import Score
     from control.scenarios import chosen_scenarios
@@ -83,7 +84,7 @@ def command(
         raise BadInput(f"--detail {detail!r} is not a score; choose from {', '.join(f.name for f in fields(Score))}")
     chosen = [s.name for s in chosen_scenarios(listed(scenarios))]
     first = first_seed if first_seed is not None else FIRST_SEED if held_out else 0
-    known = load_design(design) if design else DesignModel()
+    known = bench_design(design) if design else DesignModel()
     if plot is not None:
         check_target(plot, (design,))
     todo = jobs(names, chosen, range(first, first + seeds), period, known, held_out)

@@ -141,7 +141,8 @@ def _without_design(origin: str, model: DesignModel, records: Sequence[Recording
 
     means = _WITHOUT_DESIGN.get(origin, "")
     if origin == _FROM_RECORD:
-        means += f"; a deadband of {model.deadband:.3g} {model.pressure_unit}, be it play or friction, is in the design"
+        deadband = model.spoken.text(model.deadband, model.pressure_unit, 3)
+        means += f"; a deadband of {deadband}, be it play or friction, is in the design"
     yield DataNote(f"{_NO_DESIGN}: {origin}", means)
     if told_positions(model, records):
         yield DataNote(
@@ -160,7 +161,7 @@ def _margin(golden: Sequence[Recording], model: DesignModel) -> tuple[Margin, tu
         return Margin(), ()
     margin = healthy_margin(golden, plant_of(model))
     what = f"the design misses the healthy machine by {100.0 * margin.position / model.travel:.2g} % of travel"
-    pressure = f" and {margin.pressure:.2g} {model.pressure_unit}" if margin.pressure else ""
+    pressure = f" and {model.spoken.text(margin.pressure, model.pressure_unit, 2)}" if margin.pressure else ""
     return margin, (DataNote(f"{what}{pressure} RMS", "a cause has to explain more than that"),)
 
 

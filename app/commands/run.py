@@ -73,8 +73,9 @@ def command(
     as_json: bool,
     **bench: Any,
 ) -> None:
+    from app.recordings import bench_design
     from control.controller import parse_settings
-    from control.design import DesignModel, load_design
+    from control.design import DesignModel
     from control.plan import plan_targets
     from hal.errors import BadInput
 
@@ -87,7 +88,7 @@ def command(
     elif controller is None or targets is None:
         raise BadInput('give a controller and targets, for example: run --controller if_then_pi --targets "0.1,0.4"')
     else:
-        model = DesignModel() if design is None else load_design(design)
+        model = DesignModel() if design is None else bench_design(design)
         places = _numbers(targets)
         plan = plan_targets(places, hold_s, period_s, found.travel_in)
         wanted = Wanted(controller, parse_settings(settings), model, plan, places)
@@ -180,7 +181,6 @@ def _fitted(wanted: Wanted, info: BenchInfo, slew: float | None) -> Controller[A
 
 
 def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
-    from dataclasses import asdict
 
     from app.job import Job
     from control.drive import ControllerDrive
@@ -189,7 +189,7 @@ def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
     made = _fitted(wanted, session.bench.info, session.profile.limits.slew_per_s)
     about = {
         "controller": {"name": wanted.controller, "settings": dict(made.settings)},
-        "design": asdict(wanted.design),
+        "design": wanted.design.to_plain(),
         "targets_in": list(wanted.targets_in),
         "hold_s": plan.steps[0].hold_s,
         **wanted.continues,

@@ -46,13 +46,14 @@ def command(
     of --margins by the criterion of `compare` for limit cycles.
     """
     from app.options import listed
+    from app.recordings import bench_design
     from app.robustness import jobs
     from control.controller import controller_class
-    from control.design import DesignModel, load_design
+    from control.design import DesignModel
     from control.robustness import Plant, Subject
     from control.tune import tune
 
-    design = load_design(model) if model else DesignModel()
+    design = bench_design(model) if model else DesignModel()
     names = listed(controllers)
     for name in names:
         controller_class(name)

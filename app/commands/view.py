@@ -126,10 +126,9 @@ def _write_view(record: Run, rrd: Path | None, design: Path | None) -> Path:
 
 def _curves(record: Run, design: Path | None) -> dict[str, object] | None:
     """The design to draw: the one named, else the thesis's for a record in psi and in."""
-    from dataclasses import asdict
-
-    from control.design import DesignModel, load_design
+    from app.recordings import bench_design
+    from control.design import DesignModel
 
     if design is not None:
-        return asdict(load_design(design))
-    return asdict(DesignModel()) if {"psi", "in"} <= set(record.units.values()) else None
+        return bench_design(design).to_plain()
+    return DesignModel().to_plain() if {"psi", "in"} <= set(record.units.values()) else None

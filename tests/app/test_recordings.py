@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recordings import design_for, load_all
-from control.design import DesignModel
+from app.recordings import bench_design, design_for, load_all
+from control.design import DesignModel, check_for_control, save_design
+from hal.errors import BadInput
+from logs.spoken import HOUSE, Spoken
 
 PSI_PER_KPA, IN_PER_MM = 0.1450377, 1.0 / 25.4
+IN_BAR = DesignModel(a1=0.6, a2=0.4, compliance=70.0, travel=14.0, pressure_unit="bar", position_unit="mm")
 
 
 def a_file(folder: Path, command: str, position: str, scale: tuple[float, float]) -> Path:
@@ -43,3 +46,35 @@ def test_a_file_in_other_units_is_of_another_valve(
     if not defaults:
         assert design.compliance == pytest.approx(0.05, rel=0.02)
         assert design.deadband < 0.05
+
+
+@pytest.mark.parametrize(
+    ("units", "scale", "said"),
+    [(("psi", "in"), (1.0, 1.0), HOUSE), (("kPa", "mm"), (1.0 / PSI_PER_KPA, 1.0 / IN_PER_MM), Spoken("kPa", "mm"))],
+)
+def test_one_is_answered_in_the_units_of_the_design_or_else_of_the_records(
+    tmp_path: Path, units: tuple[str, str], scale: tuple[float, float], said: Spoken
+) -> None:
+    recordings = load_all([a_file(tmp_path, *units, scale)], None, None, "before")
+    assert design_for(None, recordings)[0].spoken == said
+    file = tmp_path / "valve.toml"
+    save_design(
+        DesignModel(a1=0.6, a2=0.4, compliance=70.0, travel=14.0, pressure_unit="bar", position_unit="mm"), file
+    )
+    design, _ = design_for(file, recordings)
+    assert design.spoken == Spoken("bar", "mm")
+    assert (design.pressure_unit, design.position_unit) == ("psi", "in")
+    assert design.travel == pytest.approx(14.0 / 25.4)
+
+
+def test_a_bench_gets_the_design_in_its_own_units(tmp_path: Path) -> None:
+    file = tmp_path / "valve.toml"
+    save_design(
+        DesignModel(a1=0.6, a2=0.4, compliance=70.0, travel=14.0, pressure_unit="bar", position_unit="mm"), file
+    )
+    design = bench_design(file)
+    check_for_control(design)
+    assert design.a1 == pytest.approx(0.6 / 0.0689475729, rel=1e-8)
+    save_design(DesignModel(position_unit="percent"), file)
+    with pytest.raises(BadInput, match="percent"):
+        check_for_control(bench_design(file))

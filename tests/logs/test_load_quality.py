@@ -79,6 +79,8 @@ def test_a_pressure_that_never_moves_is_no_measurement(tmp_path: Path) -> None:
     assert empty.pressure is None and "no number in it" in said(empty)
     still = load(tmp_path, HEAD + "0,7,7,0\n1,7,7,0.1\n2,7,7,0.2\n")  # so is the command: it may well be true
     assert still.pressure is not None and "command_psi: constant at 7" in said(still)
+    in_bar = load(tmp_path, "time_s,command_bar,position_mm\n0,0.7,0\n1,0.7,2\n2,0.7,2\n")
+    assert "command_bar: constant at 0.7" in said(in_bar)
 
 
 def test_a_clipped_signal_is_named(tmp_path: Path) -> None:
@@ -87,6 +89,8 @@ def test_a_clipped_signal_is_named(tmp_path: Path) -> None:
     position = np.minimum(0.3 + 0.2 * np.sin(time_s / 4) + 0.001 * rng.standard_normal(400), 0.45)
     rows = "".join(f"{t:.2f},{3 + t / 9:.4f},{3 + t / 9:.4f},{x:.6f}\n" for t, x in zip(time_s, position, strict=True))
     assert "position_in: flat at its highest value 0.45" in said(load(tmp_path, HEAD + rows))
+    in_mm = load(tmp_path, HEAD.replace("position_in", "position_mm") + rows)
+    assert "position_mm: flat at its highest value 0.45" in said(in_mm)  # what stands under that header
 
 
 def test_commands_that_take_effect_after_their_row_move_to_the_row_after(tmp_path: Path) -> None:

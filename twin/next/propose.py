@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from control.experiment import Experiment
 from control.preview import duration_words
+from logs.spoken import Spoken
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest, NextExperiment
@@ -145,7 +146,7 @@ def _experiment(
     size = max(found.distances, key=lambda d: d.gain).spread
     why = (
         f"{' and '.join(claims)} in {duration_words(experiment.duration_s)}: "
-        f"predictions differ by up to {size:.2g} {unit} RMS beyond what re-fitting could hide."
+        f"predictions differ by up to {scales.spoken.text(size, unit, 2)} RMS beyond what re-fitting could hide."
     )
     why = why[0].upper() + why[1:] + (f" It leaves {' and '.join(open_)} open." if open_ else "")
     return _proposed(experiment, why, " ".join([why, *words]))
@@ -155,6 +156,7 @@ def _coverage(
     result: StageResult, judgement: Judgement, tests: Sequence[EffectTest], rules: DecisionRules, limits: Limits
 ) -> Proposal:
     """After `no_gap` or `unexplained`: what would show the effects that these records could not have shown."""
+    spoken = result.case.scales.spoken
     spots = blind_spots(tests, result.case.scales, result.case.base.design)
     unexplained = judgement.verdict == "unexplained"
     start = "None of the known effects accounts for the gap. " if unexplained else ""
@@ -164,13 +166,13 @@ def _coverage(
     found = best_coverage(result, spots, rules, limits) if spots else None
     if found is None:
         here = "These records would have shown every known effect of a clear size"
-        here += f", except {_blind_words([spot.name for spot in spots], tests)}" if spots else ""
+        here += f", except {_blind_words([spot.name for spot in spots], tests, spoken)}" if spots else ""
         unshown = ", which no experiment of the library would show" if spots else ""
         tail = "; repeat them to see whether the gap repeats." if unexplained else ": no further experiment is needed."
         return Proposal(NextExperiment(start + here + unshown + tail))
     experiment = rounded(found.experiment)
     why = (
-        f"{start}The next experiment would show {_blind_words(found.shown, tests)}, in "
+        f"{start}The next experiment would show {_blind_words(found.shown, tests, spoken)}, in "
         f"{duration_words(experiment.duration_s)}."
     )
     return _proposed(experiment, why)
@@ -190,7 +192,7 @@ def _fresh_start(result: StageResult, limits: Limits, start: str) -> Proposal | 
     return _proposed(experiment, why)
 
 
-def _blind_words(names: Sequence[str], tests: Sequence[EffectTest]) -> str:
+def _blind_words(names: Sequence[str], tests: Sequence[EffectTest], spoken: Spoken) -> str:
     """Effects with what these records say of each: nothing, or only from which size on."""
     limits = {t.name: t for t in tests if t.testable and t.detection_limit is not None}
     hidden = [_plain(name) for name in names if name not in limits]
@@ -198,7 +200,7 @@ def _blind_words(names: Sequence[str], tests: Sequence[EffectTest]) -> str:
     for name in names:
         if name in limits:
             test = limits[name]
-            size = f"{test.detection_limit:.2g} {'' if test.unit == '1' else test.unit}".strip()
+            size = spoken.text(test.detection_limit or 0.0, test.unit, 2)
             side = "below" if weakens(test) else "above"
             words.append(f"{_plain(name)} (here only with a {_plain(test.parameter)} {side} {size})")
     return ", ".join(words)

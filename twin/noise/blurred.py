@@ -13,6 +13,7 @@ from dataclasses import replace
 import numpy as np
 
 from logs.recording import DataNote, FloatArray, Recording
+from logs.spoken import HOUSE, Spoken
 
 #: What moves goes so many standard deviations of the noise in `_WITHIN_S` to either side.
 _MOVES, _WITHIN_S = 8.0, 0.15
@@ -26,17 +27,21 @@ _FINEST = 1e-5
 _ROWS, _CROWDED = 300, 0.6
 
 
-def on_their_steps(recordings: Sequence[Recording], sigma: float) -> tuple[list[Recording], list[DataNote]]:
+def on_their_steps(
+    recordings: Sequence[Recording], sigma: float, spoken: Spoken = HOUSE
+) -> tuple[list[Recording], list[DataNote]]:
     """The recordings with every reading at the step about which it lies, if all of them crowd about steps.
 
-    `sigma`: standard deviation of a reading at rest. From there on they are readings of the gauge before the line.
+    `sigma`: standard deviation of a reading at rest; `spoken`: the units of what is said. From there on they are
+    readings of the gauge before the line.
     """
     step, place = blurred_step(recordings, sigma)
     if step <= 0.0:
         return list(recordings), []
     snapped = [replace(r, position=step * np.round((r.position - place) / step) + place) for r in recordings]
     unit = recordings[0].position_unit
-    what = f"readings lie about steps of {step:.4g} {unit}, with {sigma:.2g} {unit} of noise that came after them"
+    size, noise = spoken.text(step, unit, 4), spoken.text(sigma, unit, 2)
+    what = f"readings lie about steps of {size}, with {noise} of noise that came after them"
     return snapped, [DataNote(what, "each was taken for the step it is about")]
 
 

@@ -8,7 +8,7 @@ from twin.diagnosis import Bin, Diagnosis, Share
 from twin.report.words import heading, interval, name, number, percent
 
 
-def story(diagnosis: Diagnosis) -> str:
+def story(diagnosis: Diagnosis, position_unit: str = "in") -> str:
     """Verdict, causes, gap, where and what next, as headings and tables."""
     parts = [f"# {heading(diagnosis)}", diagnosis.statement, _gap(diagnosis)]
     if diagnosis.causes:
@@ -24,7 +24,7 @@ def story(diagnosis: Diagnosis) -> str:
     ):
         if group:
             parts.append(_group(title, group))
-    for title, bins in (("position", where.position), ("frequency [Hz]", where.frequency)):
+    for title, bins in ((f"position [{position_unit}]", where.position), ("frequency [Hz]", where.frequency)):
         if bins:
             parts.append(_bins(title, bins))
     if diagnosis.next_experiment:
