@@ -54,7 +54,7 @@ class Weighed:
 
 def weigh(decision: Decision, weights: Weights) -> Weighed:
     """Weighs all hypotheses of a channel around the accepted one."""
-    fits = _comparable(decision)
+    fits = comparable(decision)
     scores = np.array([decision.findings.score(f) for f in fits])
     scores = np.minimum(scores, decision.findings.score(decision.accepted))
     odds = np.exp((scores - scores.max()) / weights.temperature)
@@ -117,7 +117,7 @@ def stands_in(fit: Fit, accepted: Fit, name: str, twin: str) -> bool:
     return sorted(fit.names) == sorted({*accepted.names, twin} - {name})
 
 
-def _comparable(decision: Decision) -> list[Fit]:
+def comparable(decision: Decision) -> list[Fit]:
     """The rivals of the accepted hypothesis: none larger, since what a further cause would gain has been weighed, and
     none whose effect has no size, since it is its numbers that explain the gap.
 

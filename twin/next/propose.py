@@ -148,7 +148,7 @@ def _experiment(
         f"{' and '.join(claims)} in {duration_words(experiment.duration_s)}: "
         f"predictions differ by up to {scales.spoken.text(size, unit, 2)} RMS beyond what re-fitting could hide."
     )
-    why = why[0].upper() + why[1:] + (f" It leaves {' and '.join(open_)} open." if open_ else "")
+    why = why[0].upper() + why[1:] + (f" It leaves {' and '.join(open_)} open." if open_ else "") + dispute.caveat
     return _proposed(experiment, why, " ".join([why, *words]))
 
 
@@ -235,7 +235,7 @@ def _below_noise(dispute: Dispute, found: Found, measured_pressure: bool, result
         add = "; ".join(f"for {' and '.join(rivals)} {signal}" for signal, rivals in signals.items())
     return (
         f"{_plain(dispute.cause).capitalize()} cannot be separated from {names} with these sensors: in the best "
-        f"experiment of the library they differ by at most {share:.2g} of the noise; add {add}."
+        f"experiment of the library they differ by at most {share:.2g} of the noise; add {add}.{dispute.caveat}"
     )
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from logs.recording import FloatArray
 from twin.choose.decide import Decision
+from twin.choose.weigh import comparable
 from twin.fit.fitting import Fit
 from twin.plant import Plant
 from twin.stages import StageResult, combined
@@ -39,7 +40,8 @@ class Rival:
 class Dispute:
     """One cause and those that could replace it. `phi`, `excess`: see `twin/next/criterion.py`.
 
-    `alike` are names that no record of these signals could separate from the cause.
+    `alike` are names that no record of these signals could separate from the cause. `runner_up`: the rival is in no
+    confusion set, because these records make it far less likely; it is only what comes next.
     """
 
     cause: str
@@ -49,21 +51,34 @@ class Dispute:
     alike: tuple[str, ...]
     phi: float
     excess: float
+    runner_up: bool = False
+
+    @property
+    def caveat(self) -> str:
+        """What to say of rivals that are no rivals of the same rank, to be put behind a sentence; else nothing."""
+        if not self.runner_up:
+            return ""
+        names = " and ".join(rival.name.removeprefix("parameter:").replace("_", " ") for rival in self.rivals)
+        return f" (These records already make {names} far less likely; it only comes next.)"
 
 
 def disputes(result: StageResult, judgement: Judgement) -> list[Dispute]:
     """Every cause of the judgement that is not settled, in the judgement's order."""
     found = []
-    sets = {names[0]: names[1:] for names in judgement.confusable}
+    sets: dict[str, list[str]] = {}
+    for first, *others in judgement.confusable:
+        known = sets.setdefault(first, [])
+        known += [name for name in others if name not in known]
+    rejected = {n for d in result.decisions for n in d.names} - {cause.name for cause in judgement.causes}
     for cause in judgement.causes:
         decision = next((d for d in result.decisions if cause.name in d.names), None)
         if decision is None:
             continue
-        names = list(sets.get(cause.name, ()))
-        if not names and cause.probability < SURE:
-            names = _next_best(decision, cause.name)
+        names = sets.get(cause.name, [])
         if names:
             found.append(_dispute(result, decision, cause.name, names))
+        elif cause.probability < SURE and (names := _next_best(decision, cause.name, rejected)):
+            found.append(replace(_dispute(result, decision, cause.name, names), runner_up=True))
     return found
 
 
@@ -102,14 +117,16 @@ def _same(accepted: Fit, name: str) -> tuple[str, ...]:
     return tuple(cause.effect.same_as.get(cause.form.name, ()))
 
 
-def _next_best(decision: Decision, name: str) -> list[str]:
-    """What the best hypothesis of the same size without the cause has instead."""
-    size = len(decision.names)
-    others = [f for f in decision.findings.fits if len(f.names) == size and name not in f.names]
-    if not others:
-        return []
-    best = max(others, key=decision.findings.score)
-    return [n for n in best.names if n not in decision.names]
+def _next_best(decision: Decision, name: str, rejected: Collection[str]) -> list[str]:
+    """What the best hypothesis with one other cause in the place of this one has there.
+
+    Only of those that were weighed against it, as for a confusion set; none that was `rejected` on unseen rows.
+    """
+    kept = set(decision.names) - {name}
+    places = [(f, set(f.names) - kept) for f in comparable(decision) if kept < set(f.names) and name not in f.names]
+    others = [(f, other) for f, (other, *more) in ((f, sorted(new)) for f, new in places) if not more]
+    others = [(f, other) for f, other in others if other not in rejected]
+    return [max(others, key=lambda pair: decision.findings.score(pair[0]))[1]] if others else []
 
 
 def _freedom(fit: Fit, phi: float) -> FloatArray:

@@ -56,7 +56,10 @@ def test_proposes_what_separates_two_causes_as_a_file_that_sweep_runs(tmp_path: 
 
 
 def test_two_causes_without_a_set_are_in_dispute_while_the_first_is_not_sure() -> None:
-    assert proposed(result(*PAIR), judged("dead_time", probability=0.8)).file is not None
+    unsure = proposed(result(*PAIR), judged("dead_time", probability=0.8))
+    assert unsure.file is not None
+    assert "(These records already make sensor lag far less likely; it only comes next.)" in unsure.next.why
+    assert "comes next" not in proposed(result(*PAIR), judged("dead_time", confusable=(PAIR,))).next.why
     sure = proposed(result(*PAIR), judged("dead_time", probability=0.97))
     assert (sure.file, sure.next.file) == (None, None)
     assert "No further experiment is needed" in sure.next.why

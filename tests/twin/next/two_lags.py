@@ -60,8 +60,9 @@ def result(*names: str) -> SimpleNamespace:
     space = make_space(case.base, (), channel.numbers, case.scales, ACCUSED_SPREAD)
     retuned = fit(channel, space, starts_of(space))
     phi = inflation(fits[0].residuals, channel.use)
-    findings = SimpleNamespace(channel=channel, fits=fits, phi=phi, retuned=retuned, score=lambda f: -f.mse)
-    accepted = SimpleNamespace(findings=findings, accepted=fits[0], names=fits[0].names, explained=True)
+    found = {"channel": channel, "fits": fits, "phi": phi, "retuned": retuned, "none": retuned}
+    findings = SimpleNamespace(**found, score=lambda f: -f.mse)
+    accepted = SimpleNamespace(findings=findings, accepted=fits[0], names=fits[0].names, explained=True, slips=None)
     return SimpleNamespace(case=case, decisions=(accepted,))
 
 
