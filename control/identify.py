@@ -19,7 +19,7 @@ from control.identify_kept import Facts, settle_numbers
 from control.identify_pressure import PressureStage
 from control.identify_result import Estimate, Identified, misfit, quality_of
 from control.identify_slopes import slopes
-from control.identify_spread import spread_of
+from control.identify_spread import lag_shift, spread_of, with_lag_doubt
 from control.identify_steps import time_constant_63
 from control.identify_track import Track, reach_of
 from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
@@ -40,19 +40,19 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     notes: list[str] = []
     recordings = [cleaned(each, notes) for each in recordings]
     given = _prepared(recordings, base.ep_tau_s, notes)
-    tracks = given.tracks
-    if not tracks:
+    if not (tracks := given.tracks):
         raise BadInput(f"{recordings[0].name}: no stretch of {FEWEST_ROWS} rows without a gap; nothing can be fitted")
     check_motion(tracks, recordings)
     fit, freedom = fit_valve(tracks)
     residual = fit.residual(tracks)
     check_fit(residual, tracks, recordings)
-    facts = Facts(base, unit_p, unit_x, _ep_tau(given.stages), fit, freedom, tracks)
-    spread, freedom_rows = spread_of(tracks, fit, freedom)
-    design, estimates = settle_numbers(facts, spread, freedom_rows, notes)
+    tracks = with_lag_doubt(tracks, fit, freedom, base.ep_tau_s)
+    lag = lag_shift(tracks, fit, freedom)
+    facts = Facts(base, unit_p, unit_x, _ep_tau(given.stages), fit, freedom, tracks, _kept_lag(given.stages), lag)
+    design, estimates = settle_numbers(facts, *spread_of(tracks, fit, freedom), notes)
     check_found(estimates, tracks, recordings)
     estimates += slopes(tracks, fit, freedom, f"{unit_x}/{unit_p}", design, notes)
-    estimates += _other_ways(list(recordings), design, notes)
+    estimates += _other_ways(list(recordings), design, max(track.lag_doubt_s for track in tracks), notes)
     _say_zero(residual, tracks, fit, design, notes)
     quality = quality_of(residual, np.concatenate([t.position[t.good] for t in tracks]), design.travel)
     if given.commanded:
@@ -85,8 +85,8 @@ def _prepared(recordings: Sequence[Recording], ep_tau_s: float, notes: list[str]
         stage, fine_s, fine = drive_of(recording, ep_tau_s, notes)
         if stage is not None:
             stages.append(stage)
-            commanded += tracks_of(recording, fine_s, stage.commanded, (), [])
-        tracks += tracks_of(recording, fine_s, fine, () if stage is None else tuple(stage.doubts), notes)
+            commanded += tracks_of(recording, fine_s, stage.commanded, None, [])
+        tracks += tracks_of(recording, fine_s, fine, stage, notes)
     return _Prepared(tracks, commanded if len(stages) == len(recordings) else [], stages)
 
 
@@ -116,8 +116,15 @@ def _ep_tau(stages: Sequence[PressureStage]) -> Interval | None:
     return Interval(value, value - reach, value + reach)
 
 
-def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[str]) -> list[Estimate]:
-    """What steady dwells and the 63 % rule say, for comparison with the fit."""
+def _kept_lag(stages: Sequence[PressureStage]) -> float | None:
+    """The E/P lag that was used where pressures do not tell it; the median of several."""
+    return float(np.median([stage.lag_s for stage in stages])) if stages else None
+
+
+def _other_ways(
+    recordings: list[Recording], design: DesignModel, lag_doubt_s: float, notes: list[str]
+) -> list[Estimate]:
+    """What steady dwells and the 63 % rule say, for comparison with the fit; `lag_doubt_s`: of the converter's lag."""
     unit_p, unit_x = design.pressure_unit, design.position_unit
     settling = Settling(design.tau_s, design.ep_tau_s, design.rate_limit)
     curves = characterize(recordings, settling)
@@ -127,7 +134,7 @@ def _other_ways(recordings: list[Recording], design: DesignModel, notes: list[st
             k = curve.compliance
             estimates.append(Estimate(f"{onset} (curves)", curve.onset.value, curve.onset, unit_p, "curves"))
             estimates.append(Estimate(f"{slope} (curves)", k.value, k, f"{unit_x}/{unit_p}", "curves"))
-    steps = time_constant_63(recordings, settling, design.travel)
+    steps = time_constant_63(recordings, settling, design.travel, lag_doubt_s)
     if steps.tau_s is not None:
         said = f"{steps.raw_s.size} steps, {np.median(steps.raw_s):.2f} s with the E/P lag"
         estimates.append(Estimate("tau (63 %)", steps.tau_s.value, steps.tau_s, "s", "63 % rule", said))

@@ -10,12 +10,14 @@ import numpy as np
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_result import Estimate
+from control.identify_spread import with_lag
 from control.identify_track import Track, reach_of
 from control.identify_valve import Freedom, ValveFit, top_speed
 from logs.recording import FloatArray
 
 VAGUE = 0.3  # an interval whose half width is more than this share of the number's size tells nothing
 BOTH_WAYS = 0.05  # of the longer way, that the shorter must be before anything can be said of two curves
+SHARED = 0.01  # of tau, that the doubt of the E/P lag must add before it is worth a note
 VAGUE_ONSET = 0.15  # likewise for a1 and a2, as a share of the range of pressures
 
 
@@ -30,6 +32,13 @@ class Facts:
     fit: ValveFit
     freedom: Freedom
     tracks: Sequence[Track]
+    kept_s: float | None  # the lag that was used for a pressure that does not tell it, where one was measured
+    lag: FloatArray  # how far each fitted number goes with what is not known of the converter's lag (95 %)
+
+    @property
+    def kept_lag_s(self) -> float:
+        """The converter's lag that was used where the record does not tell it [s]."""
+        return self.base.ep_tau_s if self.kept_s is None else self.kept_s
 
     @property
     def span(self) -> float:
@@ -59,10 +68,12 @@ def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]
     from scipy.stats import t as student
 
     reach = float(student.ppf(0.975, rows))
-    half = reach * np.sqrt(np.diag(spread))
     values = facts.freedom.pack(facts.fit.numbers)
     found: dict[str, Interval] = {}
     doubtful = _doubtful(facts, values, spread, reach)
+    notes += _shared(facts, values, spread, reach)
+    spread = with_lag(spread, facts.lag)
+    half = reach * np.sqrt(np.diag(spread))
     for name, value, width in zip(facts.freedom.names, values, half[: values.size], strict=True):
         if np.isfinite(width) and name not in doubtful:
             found[name] = Interval(float(value), float(value - width), float(value + width))
@@ -84,6 +95,21 @@ def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]
         travel=by_name["travel"],
     )
     return design, estimates
+
+
+def _shared(facts: Facts, values: FloatArray, spread: FloatArray, reach: float) -> list[str]:
+    """What to say where the stem's time constant has most of its doubt from the converter's lag."""
+    at = facts.freedom.names.index("tau")
+    doubt_s = max(track.lag_doubt_s for track in facts.tracks)
+    own, borrowed = reach * float(np.sqrt(spread[at, at])), abs(float(facts.lag[at]))
+    if not borrowed > max(own, SHARED * values[at]):
+        return []
+    ep_s = facts.ep_tau.value if facts.ep_tau is not None else facts.kept_lag_s
+    both, half = float(values[at]) + ep_s, float(np.hypot(own, facts.lag[at] + doubt_s))
+    return [
+        f"tau and the E/P lag add up to {both:.4g} s ({both - half:.4g} .. {both + half:.4g}); how much of it is the "
+        "converter's these recordings do not tell any better, which is why the interval of tau is wide: sample faster"
+    ]
 
 
 def _doubtful(facts: Facts, values: FloatArray, spread: FloatArray, reach: float) -> set[str]:
@@ -180,6 +206,8 @@ def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Es
             notes.append(f"{words}: {why}; kept at {default:.4g} {unit}")
             estimates.append(Estimate(name, default, None, unit, "kept", why))
     ep = found.get("ep.tau", facts.ep_tau)
-    kept = Estimate("ep.tau", base.ep_tau_s, None, "s", "kept", "not to be told from the record; tau carries its error")
+    kept = Estimate(
+        "ep.tau", facts.kept_lag_s, None, "s", "kept", "not to be told from the record; tau carries its error"
+    )
     estimates.append(Estimate("ep.tau", ep.value, ep, "s", "fit") if ep is not None else kept)
     return estimates

@@ -11,14 +11,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from control.identify_interval import Interval, covariance, intervals
+from control.identify_interval import Interval, covariance
 from control.identify_model import Grid, lagged
 from control.identify_readings import fast_noise
+from control.identify_response import TAU_RANGE_S, Shape, project, told
 from logs.recording import FloatArray
 
 WIDTHS_S = (1.0, 2.0, 4.0, 8.0, 16.0, 32.0)
 BLIND_S = 0.5  # readings closer than this share their noise and do not count as unseen
-TAU_RANGE_S = (0.005, 60.0)
 TOLERANCE = 0.005  # of the span, by which a pressure may differ from its command; gauges of a bench are no better
 SURE_SIGMAS = 4.0  # ... and of the standard error of that difference
 DOUBTS = 24
@@ -27,19 +27,24 @@ PIECES = 8.0  # the noise is dealt anew in pieces of this part of the average's 
 
 @dataclass(frozen=True, slots=True)
 class PressureStage:
-    """pressure = gain * lag(command) + zero. `tau_s` is None where the record does not tell.
+    """pressure = gain * lag(command) + zero. `tau_s` is None where the record does not tell; `lag_s` was used then.
 
+    `doubt_s` is how far the lag may be off, half of a 95 % interval, and `later` what drives the play if it is more by
+    that: between rows that are far apart a lag leaves next to no trace, and whatever is fitted behind it carries that.
     `off` is the largest difference between a command of the record and the pressure that it settles at, `off_sigma` its
     standard error, `span` the range of the commands, or half the highest of them where that is more.
     """
 
     tau_s: Interval | None
+    lag_s: float
+    doubt_s: float
     gain: float
     zero: float
     rms: float
     width_s: float
     doubts: FloatArray  # what the smoothed pressure may be off by, shape (DOUBTS, n): noise like that of the readings
     fine: FloatArray  # the pressure that drives the play, on the fine grid
+    later: FloatArray
     commanded: FloatArray  # the pressure that the design model makes of the command alone, on the fine grid
     off: float
     off_sigma: float
@@ -53,40 +58,63 @@ class PressureStage:
 
 def fit_pressure(grid: Grid, command: FloatArray, pressure: FloatArray, default_tau_s: float) -> PressureStage:
     """Fits the lag to readings, shape (n,), NaN where missing; keeps `default_tau_s` where it cannot be told."""
-    from scipy.optimize import minimize_scalar
-
     good = np.isfinite(pressure)
-    moves = bool(np.ptp(command[good]) > 20.0 * fast_noise(pressure[good]))
-    log_tau = np.log(default_tau_s or 1e-3)
-    if moves:
-        coarse = np.linspace(np.log(TAU_RANGE_S[0]), np.log(TAU_RANGE_S[1]), 24)
-        best = coarse[int(np.argmin([_project(grid, command, pressure, good, np.exp(z)).cost for z in coarse]))]
-        step = coarse[1] - coarse[0]
-        found = minimize_scalar(
-            lambda z: _project(grid, command, pressure, good, np.exp(z)).cost,
-            bounds=(best - step, best + step),
-            method="bounded",
-            options={"xatol": 1e-5},
-        )
-        log_tau = float(found.x)
-    shape = _project(grid, command, pressure, good, float(np.exp(log_tau)))
-    interval = _interval(grid, command, pressure, good, log_tau) if moves else None
-    if interval is None or interval.half_width > 0.5 * interval.value:
-        interval = None
-        shape = _project(grid, command, pressure, good, default_tau_s)
+    interval, lag_s, doubt_s, shape = _lag(grid, command, pressure, good, default_tau_s)
     rest = np.where(good, pressure - shape.rows, 0.0)
     width_s = _best_width_s(grid.time_s, rest, good) if good.sum() > 20 else 0.0
     correction = moving_average(grid.time_s, rest, good, width_s)
-    fine = shape.fine(grid, command) + np.interp(np.arange(grid.n_fine), grid.first, correction)
-    rms = float(np.sqrt(np.mean(rest[good] ** 2)))
-    doubts = _doubts(grid.time_s, np.where(good, rest - correction, 0.0), good, width_s)
+    later = project(grid, command, pressure, good, lag_s + doubt_s)
     commanded = lagged(grid, command, shape.tau_s, float(command[0]))
     off, off_sigma = _off(commanded[grid.first][good], command, shape, rest[good])
-    span = float(max(np.ptp(command), 0.5 * np.max(np.abs(command))))
-    return PressureStage(interval, shape.gain, shape.zero, rms, width_s, doubts, fine, commanded, off, off_sigma, span)
+    return PressureStage(
+        tau_s=interval,
+        lag_s=lag_s,
+        doubt_s=doubt_s,
+        gain=shape.gain,
+        zero=shape.zero,
+        rms=float(np.sqrt(np.mean(rest[good] ** 2))),
+        width_s=width_s,
+        doubts=_doubts(grid.time_s, np.where(good, rest - correction, 0.0), good, width_s),
+        fine=_driving(grid, command, pressure, good, shape, width_s),
+        later=_driving(grid, command, pressure, good, later, width_s),
+        commanded=commanded,
+        off=off,
+        off_sigma=off_sigma,
+        span=float(max(np.ptp(command), 0.5 * np.max(np.abs(command)))),
+    )
 
 
-def _off(response: FloatArray, command: FloatArray, shape: _Shape, rest: FloatArray) -> tuple[float, float]:
+def _lag(
+    grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, default_tau_s: float
+) -> tuple[Interval | None, float, float, Shape]:
+    """The lag's interval, if it is told; the lag to use, how far that may be off at 95 %, and the response with it."""
+    from scipy.optimize import minimize_scalar
+
+    if not np.ptp(command[good]) > 20.0 * fast_noise(pressure[good]):
+        return None, default_tau_s, 0.0, project(grid, command, pressure, good, default_tau_s)
+    coarse = np.linspace(np.log(TAU_RANGE_S[0]), np.log(TAU_RANGE_S[1]), 24)
+    best = coarse[int(np.argmin([project(grid, command, pressure, good, np.exp(z)).cost for z in coarse]))]
+    step = coarse[1] - coarse[0]
+    found = minimize_scalar(
+        lambda z: project(grid, command, pressure, good, np.exp(z)).cost,
+        bounds=(best - step, best + step),
+        method="bounded",
+        options={"xatol": 1e-5},
+    )
+    shape = project(grid, command, pressure, good, float(np.exp(float(found.x))))
+    interval, lag_s, doubt_s = told(grid, command, pressure, good, shape, default_tau_s)
+    return interval, lag_s, doubt_s, shape if interval else project(grid, command, pressure, good, lag_s)
+
+
+def _driving(
+    grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, shape: Shape, width_s: float
+) -> FloatArray:
+    """The response and what the smoothed readings add to it, on the fine grid."""
+    correction = moving_average(grid.time_s, np.where(good, pressure - shape.rows, 0.0), good, width_s)
+    return shape.fine(grid, command) + np.interp(np.arange(grid.n_fine), grid.first, correction)
+
+
+def _off(response: FloatArray, command: FloatArray, shape: Shape, rest: FloatArray) -> tuple[float, float]:
     """How far the settled pressure is from the command, at the end of the commands where it is further; its sigma."""
     if np.ptp(response) < 1e-9:
         return 0.0, 0.0
@@ -120,59 +148,6 @@ def _doubts(time_s: FloatArray, noise: FloatArray, good: np.ndarray, width_s: fl
         dealt[good] = np.concatenate([signs[i] * pieces[i] for i in chance.permutation(len(pieces))])
         found.append(moving_average(time_s, dealt, good, width_s))
     return np.array(found)
-
-
-@dataclass(frozen=True, slots=True)
-class _Shape:
-    """The best gain, zero and start for a time constant; `rows` is the response at the rows."""
-
-    tau_s: float
-    cost: float
-    gain: float
-    zero: float
-    start: float
-    rows: FloatArray
-
-    def fine(self, grid: Grid, command: FloatArray) -> FloatArray:
-        """The response on the fine grid."""
-        fade = np.exp(-(grid.fine_time_s - grid.time_s[0]) / max(self.tau_s, 1e-6))
-        response = lagged(grid, command, self.tau_s, float(command[0]))
-        return np.asarray(self.gain * response + self.zero + self.start * fade)
-
-
-def _project(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, tau_s: float) -> _Shape:
-    """The best shape for one time constant, by least squares that a few false readings cannot pull."""
-    rows = lagged(grid, command, tau_s, float(command[0]))[grid.first]
-    middle = float(np.mean(rows[good]))
-    columns = [rows - middle, np.ones_like(rows), np.exp(-(grid.time_s - grid.time_s[0]) / max(tau_s, 1e-6))]
-    if np.ptp(rows[good]) < 1e-9:
-        columns[0] = np.zeros_like(rows)
-    basis = np.stack(columns)
-    weight = good.astype(np.float64)
-    target = np.where(good, pressure, 0.0)
-    for _ in range(3):
-        weighted = basis * weight
-        # Plain loops: the threads of a linear algebra library cost more than three columns are worth.
-        normal, right = np.einsum("ik,jk->ij", weighted, basis), np.einsum("ik,k->i", weighted, target)
-        found = np.linalg.lstsq(normal, right, rcond=1e-12)[0]
-        fitted = np.einsum("i,ik->k", found, basis)
-        rest = np.where(good, pressure - fitted, 0.0)
-        limit = 3.0 * 1.4826 * float(np.median(np.abs(rest[good]))) + 1e-12
-        weight = good * np.minimum(1.0, limit / np.maximum(np.abs(rest), 1e-12))
-    gain = float(found[0]) if columns[0].any() else 1.0
-    zero = float(found[1]) - gain * middle
-    return _Shape(tau_s, float(np.sum(weight * rest**2)), gain, zero, float(found[2]), np.asarray(fitted))
-
-
-def _interval(grid: Grid, command: FloatArray, pressure: FloatArray, good: np.ndarray, log_tau: float) -> Interval:
-    step = 1e-3
-    at, above, below = (_project(grid, command, pressure, good, float(np.exp(log_tau + z))) for z in (0.0, step, -step))
-    slope = (above.rows - below.rows)[good] / (2.0 * step)
-    rest = (pressure - at.rows)[good]
-    limit = 3.0 * 1.4826 * float(np.median(np.abs(rest))) + 1e-12
-    found = intervals(np.array([log_tau]), slope[:, None], np.clip(rest, -limit, limit))[0]
-    tau_s = float(np.exp(log_tau))
-    return Interval(tau_s, tau_s * float(np.exp(found.low - log_tau)), tau_s * float(np.exp(found.high - log_tau)))
 
 
 def moving_average(time_s: FloatArray, values: FloatArray, good: np.ndarray, width_s: float) -> FloatArray:

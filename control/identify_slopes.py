@@ -9,7 +9,7 @@ import numpy as np
 from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_result import Estimate
-from control.identify_spread import spread_of
+from control.identify_spread import lag_shift, spread_of, with_lag
 from control.identify_track import Track
 from control.identify_valve import Freedom, ValveFit, refit_separate
 
@@ -24,6 +24,7 @@ def slopes(
 
     found, separate = refit_separate(tracks, fit, freedom)
     spread, rows = spread_of(tracks, found, separate)
+    spread = with_lag(spread, lag_shift(tracks, found, separate))
     k1, k2 = float(found.numbers[2]), float(found.numbers[3])
     both = spread[2:4, 2:4]
     reach = float(student.ppf(0.975, rows)) * np.sqrt([both[0, 0], both[1, 1], 0.25 * both.sum()])

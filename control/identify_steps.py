@@ -35,10 +35,13 @@ class StepTimes:
     tau_s: Interval | None
 
 
-def time_constant_63(recordings: list[Recording], settling: Settling, travel: float) -> StepTimes:
+def time_constant_63(
+    recordings: list[Recording], settling: Settling, travel: float, lag_doubt_s: float = 0.0
+) -> StepTimes:
     """The median over all steps that count, with an interval from their order statistics.
 
-    `settling` is what the fit says, needed to know which dwells are long enough and where they end.
+    `settling` is what the fit says, needed to know which dwells are long enough and where they end. `lag_doubt_s`: how
+    far the converter's lag, which is taken out, may be off, half of a 95 % interval.
     """
     ep_tau_s = settling.delay_s
     found: list[float] = []
@@ -52,7 +55,9 @@ def time_constant_63(recordings: list[Recording], settling: Settling, travel: fl
     reach = 1.96 * math.sqrt(each.size) / 2.0
     low = max(0, math.floor(each.size / 2.0 - reach))
     high = min(each.size - 1, math.ceil(each.size / 2.0 + reach))
-    return StepTimes(raw_s, Interval(float(np.median(each)), float(each[low]), float(each[high])))
+    middle = float(np.median(each))
+    below, above = (float(np.hypot(each[end] - middle, lag_doubt_s)) for end in (low, high))
+    return StepTimes(raw_s, Interval(middle, middle - below, middle + above))
 
 
 def _times(recording: Recording, dwells: Dwells, settling: Settling, travel: float) -> list[float]:

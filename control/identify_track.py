@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,6 +21,8 @@ class Track:
     """One record ready to be fitted: its grid, the driving pressure on it, and the position readings, shape (n,).
 
     `command`: what is commanded, on the grid, where no pressure was measured; `pressure` is then a guess of the lag.
+    `later`: what drives the play, on the grid, if the converter's lag is longer by `lag_doubt_s`, half of the 95 %
+    interval in which it may lie.
     """
 
     grid: Grid
@@ -30,12 +32,20 @@ class Track:
     start: float  # the position at the first row
     doubts: tuple[FloatArray, ...] = ()  # what the pressure may be off by, on the grid
     command: FloatArray | None = None
+    later: FloatArray | None = None
+    lag_doubt_s: float = 0.0
 
     def driven(self, ep_tau_s: float | None) -> FloatArray:
         """The pressure on the grid if the converter's lag is that; as it was given for None."""
         if ep_tau_s is None or self.command is None:
             return self.pressure
         return lagged_fine(self.grid, self.command, ep_tau_s, float(self.pressure[0]))
+
+    def lag_moved(self, way: float) -> Track:
+        """The track with a lag longer (`way` = 1) or shorter (-1) by its doubt."""
+        if self.later is None:
+            return self
+        return replace(self, pressure=self.pressure + way * (self.later - self.pressure))
 
 
 def first_position(time_s: FloatArray, position: FloatArray, good: np.ndarray) -> float:
@@ -58,10 +68,12 @@ def thinned(track: Track, least_period_s: float = ROUGH_S) -> Track:
     keep = max((slice(first, None, stride) for first in range(stride)), key=lambda rows: int(track.good[rows].sum()))
     grid = make_grid(time_s[keep], 0.25 * least_period_s)
     pressure = np.interp(grid.fine_time_s, fine_s, track.pressure)
+    later = None if track.later is None else np.interp(grid.fine_time_s, fine_s, track.later)
     command = track.command
     if command is not None:  # what is in force until a fine time counts there
         command = command[np.minimum(np.searchsorted(fine_s, grid.fine_time_s - 1e-9), fine_s.size - 1)]
-    return Track(grid, pressure, track.position[keep], track.good[keep], track.start, command=command)
+    kept = Track(grid, pressure, track.position[keep], track.good[keep], track.start, command=command)
+    return replace(kept, later=later, lag_doubt_s=track.lag_doubt_s)
 
 
 def reach_of(tracks: Sequence[Track]) -> Reach:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from itertools import permutations
 
@@ -51,7 +50,10 @@ def drive_of(
             stage = shifted
             notes.append(f"{recording.name}: the commands fit the pressure better when they count from their row on")
     if stage.tau_s is None:
-        notes.append(f"{recording.name}: the pressure does not show the E/P lag; it is kept at {ep_tau_s:g} s")
+        notes.append(
+            f"{recording.name}: the pressure does not show the E/P lag: {_lag_range(stage)} all agree with readings "
+            f"every {recording.period_s:.3g} s; it is kept at {stage.lag_s:.3g} s"
+        )
     if not stage.is_calibrated:
         notes.append(
             f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}, up to {stage.off:.2g} "
@@ -59,6 +61,10 @@ def drive_of(
             "a1 and a2 are what the gauge reads, not what is commanded"
         )
     return stage, grid.fine_time_s, stage.fine
+
+
+def _lag_range(stage: PressureStage) -> str:
+    return f"{max(0.0, stage.lag_s - stage.doubt_s):.2g} to {stage.lag_s + stage.doubt_s:.2g} s"
 
 
 def unit_doubt(gain: float) -> str:
@@ -73,9 +79,14 @@ def unit_doubt(gain: float) -> str:
 
 
 def tracks_of(
-    recording: Recording, fine_s: FloatArray, fine: FloatArray, doubts: Sequence[FloatArray], notes: list[str]
+    recording: Recording,
+    fine_s: FloatArray,
+    fine: FloatArray,
+    stage: PressureStage | None,
+    notes: list[str],
 ) -> list[Track]:
-    """The record cut at its gaps: what the valve did meanwhile nobody knows."""
+    """The record cut at its gaps: what the valve did meanwhile nobody knows. `stage` tells how sure its pressure is."""
+    doubts = () if stage is None else tuple(stage.doubts)
     breaks = [] if recording.gap_before is None else np.flatnonzero(recording.gap_before).tolist()
     tracks = []
     for start, stop in zip([0, *breaks], [*breaks, recording.n], strict=True):
@@ -90,5 +101,9 @@ def tracks_of(
         position = np.where(good, position, 0.0)
         begin = first_position(grid.time_s, position, good)
         command = held(grid, recording.command[start:stop]) if recording.pressure is None else None
-        tracks.append(Track(grid, pressure, position, good, begin, doubt, command))
+        track = Track(grid, pressure, position, good, begin, doubt, command)
+        if stage is not None and stage.doubt_s > 0.0:
+            later = np.interp(grid.fine_time_s, fine_s, stage.later)
+            track = replace(track, later=later, lag_doubt_s=stage.doubt_s)
+        tracks.append(track)
     return tracks

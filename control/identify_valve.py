@@ -20,6 +20,7 @@ from control.identify_starts import NEVER, first_guesses
 from control.identify_track import Track, reach_of, thinned
 from logs.recording import FloatArray
 
+DOUBT_S = 0.02  # of the converter's lag, from which on it may be taken for a rate limit
 GAIN_FOR_A_NUMBER = 12.0  # fall of the cost, in units of the noise variance times memory, that a number must bring
 
 
@@ -121,9 +122,20 @@ def _settle_freedom(tracks: Sequence[Track], fit: ValveFit, ep: bool) -> tuple[V
     worth = GAIN_FOR_A_NUMBER * _variance(found[full].residual(tracks))
     for freedom in sorted(found, key=lambda each: (len(each.names), each.rate)):
         lacking = len(full.names) - len(freedom.names)
-        if found[freedom].cost - found[full].cost < worth * lacking:
+        if _least_cost(tracks, found[freedom], freedom) - found[full].cost < worth * lacking:
             return found[freedom], freedom
     return found[full], full
+
+
+def _least_cost(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> float:
+    """The cost without a rate limit under the converter's lag that suits it best.
+
+    A lag that the pressure does not tell bends the steps as a rate limit would: no limit is found for that alone.
+    """
+    if freedom.rate or max(track.lag_doubt_s for track in tracks) < DOUBT_S:
+        return fit.cost
+    moved = [[track.lag_moved(way) for track in tracks] for way in (-1.0, 1.0)]
+    return min(fit.cost, *(_refine(each, fit.numbers, freedom, rounds=8).cost for each in moved))
 
 
 def refit_separate(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> tuple[ValveFit, Freedom]:
