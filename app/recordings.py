@@ -34,6 +34,23 @@ def common_units(recordings: Sequence[Recording]) -> tuple[str, str]:
     return first.pressure_unit, first.position_unit
 
 
+def from_open(
+    recordings: Sequence[Recording], golden: Sequence[Recording] = ()
+) -> tuple[list[Recording], list[Recording]]:
+    """Both without what their positions read where the stem is fully open, if no design is given that says.
+
+    Where the design is the defaults, whose travel is known, less than that travel is not for guessing: a sensor's zero
+    may be what has slipped. Raises: `BadInput` for recordings in different units.
+    """
+    from control.identify_starts import FAR
+    from control.identify_zero import zeroed
+
+    every = [*recordings, *golden]
+    common_units(every)
+    done = zeroed(every, 1.0 if not golden and _of_the_defaults(every) else FAR)
+    return done[: len(recordings)], done[len(recordings) :]
+
+
 def design_for(
     path: Path | None, recordings: Sequence[Recording], golden: Sequence[Recording] = ()
 ) -> tuple[DesignModel, str]:
@@ -92,9 +109,15 @@ def _without_file(
 
     if golden:
         return _identified(golden, pressure_unit, position_unit), "identified from the healthy recordings"
-    if (pressure_unit, position_unit) == ("psi", "in") and not any(_of_another_house(r) for r in recordings):
+    if _of_the_defaults(recordings):
         return DesignModel(), "the defaults"
     return _identified(recordings, pressure_unit, position_unit), "identified from the record"
+
+
+def _of_the_defaults(recordings: Sequence[Recording]) -> bool:
+    """Whether nothing speaks against the thesis's valve; all are in the same units."""
+    units = recordings[0].pressure_unit, recordings[0].position_unit
+    return units == ("psi", "in") and not any(_of_another_house(one) for one in recordings)
 
 
 def _of_another_house(recording: Recording) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from control.design import DesignModel
 from control.sparse_rows import refuse_sparse_motion
 from hal.errors import BadInput
 from logs.recording import DataNote, FloatArray, Recording
@@ -30,6 +31,8 @@ STILL_SIGMAS = 8.0
 PREDICTED = 0.1
 #: Readings or commands this far from anything the design knows are of another column or unit.
 _ABSURD = 3.0
+#: Of the travel: what goes over less than that may be one from another zero.
+_ABOUT = 1.2
 _CONTRARY = -0.5
 _STEP_S = 0.1
 _PARTS = 64
@@ -167,10 +170,10 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
     x, p = (d.spoken.unit(unit) for unit in (d.position_unit, d.pressure_unit))
     low, middle, high = np.percentile(readings, (5.0, 50.0, 95.0))
     if high - low > _ABSURD * d.travel or abs(middle) > _ABSURD * d.travel:
-        low, high, travel = (d.spoken.value(v, d.position_unit) for v in (low, high, d.travel))
+        low, high, travel = (d.spoken.value(float(v), d.position_unit) for v in (low, high, d.travel))
         raise BadInput(
             f"{names}: positions of {low:.3g} to {high:.3g} {x} do not belong to a travel of {travel:.3g} {x}; "
-            f"check the column (--map position=...) and its unit (--units position=mm)"
+            f"check the column (--map position=...) and its unit (--units position=mm){_zero_hint(recordings, d)}"
         )
     closed = d.a1 + d.travel / d.compliance
     low, middle, high = np.percentile(np.concatenate([r.command for r in recordings]), (5.0, 50.0, 95.0))
@@ -180,3 +183,17 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
             f"{names}: commands of {low:.3g} to {high:.3g} {p} do not belong to curves between {opens:.3g} and "
             f"{closed:.3g} {p}; check the column (--map command=...) and its unit (--units command=kPa)"
         )
+
+
+def _zero_hint(recordings: Sequence[Recording], design: DesignModel) -> str:
+    """How to take off another zero, where the positions go over no more than a travel."""
+    low, high = np.nanpercentile(np.concatenate([r.position for r in recordings]), (0.5, 99.5))
+    if high - low > _ABOUT * design.travel:
+        return ""
+    file, ours = of_its_file(recordings[0]), design.position_unit
+    zero, full, travel = (file.value(float(v), ours) for v in (low, low + design.travel, design.travel))
+    unit = file.unit(ours)
+    return (
+        f"; if it is their zero that is elsewhere, take that off, as in --units 'position={unit}({zero:.4g}.."
+        f"{full:.4g}=0..{travel:.4g} {unit})'"
+    )

@@ -103,13 +103,15 @@ def command(
 def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], design: Path | None, out: Path) -> Outcome:
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
-    from app.recordings import design_for
+    from app.recordings import design_for, from_open
     from twin.diagnose import Settings, diagnose
     from twin.insert import inserted_from
     from twin.partial import Interrupted
     from twin.write import write_outcome
 
     outcome = None
+    if design is None:
+        recordings, golden = from_open(recordings, golden)
     model, origin = design_for(design, recordings, golden)
     margin, known = _margin(golden, model)
     said = known if design else (*_without_design(origin, model, golden or recordings), *known)

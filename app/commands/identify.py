@@ -34,7 +34,7 @@ def command(
     plot: Path | None,
     as_json: bool,
 ) -> None:
-    from app.recordings import load_all
+    from app.recordings import from_open, load_all
     from control.design import save_design
     from control.identify import identify
     from control.identify_checks import check_commands
@@ -47,7 +47,7 @@ def command(
         from app.fit_picture import check_target
 
         check_target(plot, runs)
-    recordings = load_all(runs, mapping, units, command_timing)
+    recordings, _ = from_open(load_all(runs, mapping, units, command_timing))
     found = identify(recordings)
     check_commands(found.design, recordings)
     try:

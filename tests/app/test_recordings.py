@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from app.recordings import bench_design, design_for, load_all
+from app.recordings import bench_design, design_for, from_open, load_all
 from control.design import DesignModel, check_for_control, save_design
 from hal.errors import BadInput
+from logs.recording import Recording
 from logs.spoken import HOUSE, Spoken
+from tests.control.toy_valve import Toy, random_steps, record
 
 PSI_PER_KPA, IN_PER_MM = 0.1450377, 1.0 / 25.4
 IN_BAR = DesignModel(a1=0.6, a2=0.4, compliance=70.0, travel=14.0, pressure_unit="bar", position_unit="mm")
@@ -78,3 +81,19 @@ def test_a_bench_gets_the_design_in_its_own_units(tmp_path: Path) -> None:
     save_design(DesignModel(position_unit="percent"), file)
     with pytest.raises(BadInput, match="percent"):
         check_for_control(bench_design(file))
+
+
+def test_a_zero_far_from_fully_open_is_taken_off_where_no_design_says_where_it_is(tmp_path: Path) -> None:
+    command = random_steps(240.0, 0.2, seed=3)
+    plain = record(Toy(), 0.2 * np.arange(command.size), command)
+
+    def read(zero_in: float, foreign: bool) -> Recording:
+        meta = {"foreign": ("position",)} if foreign else {}
+        return replace(plain, position=plain.position + zero_in, meta=meta)
+
+    ((done,), golden) = from_open([read(0.3, foreign=True)])
+    assert golden == [] and done.notes[-1].what.startswith("the position reads 0.3 in where")
+    ((same,), _) = from_open([read(0.3, foreign=False)])  # of the thesis's travel: a sensor may have slipped
+    assert same.notes == plain.notes
+    ((far,), (beside,)) = from_open([read(2.0, foreign=False)], [read(2.0, foreign=False)])
+    assert abs(float(far.position.min())) < 0.01 and np.array_equal(far.position, beside.position)

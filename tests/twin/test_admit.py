@@ -10,6 +10,7 @@ import pytest
 from control.design import DesignModel
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
+from tests.control.toy_valve import Toy, random_steps, record
 from twin.admit import admit
 from twin.noise.model import estimate_noise
 from twin.plant import Plant
@@ -77,3 +78,10 @@ def test_rows_so_far_apart_that_motion_looks_like_noise_are_not_called_a_stuck_s
     stuck = [Recording("r", 12.0 * np.arange(60), command, 0.3 + NOISE[:60])]
     with pytest.raises(BadInput, match="stem is stuck"):
         admit(stuck, Plant(DesignModel()), estimate_noise(stuck))
+
+
+def test_positions_from_another_zero_are_told_how_to_take_it_off() -> None:
+    r = record(Toy(), np.arange(0.0, 200.0, 0.2), random_steps(200.0, 0.2))
+    far = replace(r, position=r.position + 3.0, meta={"written": {"command": "bar", "position": "mm"}})
+    with pytest.raises(BadInput, match=r"take that off, as in --units 'position=mm\(76.1\d..90.4\d?=0..14.29 mm\)'"):
+        admit([far], Plant(DesignModel()), estimate_noise([far]))
