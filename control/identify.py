@@ -26,6 +26,7 @@ from control.identify_tracks import FEWEST_ROWS, cleaned, drive_of, tracks_of
 from control.identify_valve import ValveFit, fit_valve
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
+from logs.spoken import spoken_by
 
 
 def identify(recordings: Sequence[Recording], defaults: DesignModel | None = None) -> Identified:
@@ -36,7 +37,7 @@ def identify(recordings: Sequence[Recording], defaults: DesignModel | None = Non
     """
     check_records(recordings)
     unit_p, unit_x = recordings[0].pressure_unit, recordings[0].position_unit
-    base = defaults or default_design(unit_p, unit_x)
+    base = replace(defaults or default_design(unit_p, unit_x), spoken=spoken_by(recordings))
     notes: list[str] = []
     recordings = [cleaned(each, notes) for each in recordings]
     given = _prepared(recordings, base.ep_tau_s, notes)
@@ -148,8 +149,9 @@ def _say_zero(
     """What no valve is: off at the open stop, closed without any pressure, on its way for ages."""
     notes += slow_note(design)
     if design.a1 < 0.0 and not reach_of(tracks).away:
+        a1 = design.spoken.text(design.a1, design.pressure_unit, 4)
         notes.append(
-            f"with a1 = {design.a1:.4g} {design.pressure_unit} the stem would close without any pressure: is the "
+            f"with a1 = {a1} the stem would close without any pressure: is the "
             "command a position, told to a positioner? Then this is no open-loop record, and no number is the valve's"
         )
     predicted = np.concatenate([x[t.good] for t, x in zip(tracks, fit.predict(tracks), strict=True)])
@@ -157,4 +159,5 @@ def _say_zero(
     if open_rows.sum() >= FEWEST_ROWS:
         zero = float(np.median(residual[open_rows]))
         if abs(zero) > 0.005 * design.travel:
-            notes.append(f"fully open it reads {zero:+.4f} {design.position_unit}, not 0: check the LVDT's zero")
+            said = design.spoken.text(zero, design.position_unit, 3)
+            notes.append(f"fully open it reads {said}, not 0: check the LVDT's zero")

@@ -78,8 +78,9 @@ def settle_numbers(facts: Facts, spread: FloatArray, rows: int, notes: list[str]
         if np.isfinite(width) and name not in doubtful:
             found[name] = Interval(float(value), float(value - width), float(value + width))
     if facts.away and {"a1", "a2"} & found.keys():
+        lowest = facts.base.spoken.text(facts.away, facts.unit_x, 4)
         notes.append(
-            f"the stem stayed above {facts.away:.4g} {facts.unit_x}: a1, a2 and the compliance are of its curves as "
+            f"the stem stayed above {lowest}: a1, a2 and the compliance are of its curves as "
             "they would go on below, and hold together only"
         )
     estimates = [*_onsets(facts, found, reach, spread, notes), *_rest(facts, found, notes)]
@@ -180,7 +181,7 @@ def _no_play(a1: Interval, unit: str, notes: list[str]) -> list[Estimate]:
 
 
 def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Estimate]:
-    base, unit_x = facts.base, facts.unit_x
+    base, unit_x, spoken = facts.base, facts.unit_x, facts.base.spoken
     highest, speed = facts.highest, top_speed(facts.tracks, facts.fit)
     said = {
         "compliance": ("compliance", base.compliance, f"{unit_x}/{facts.unit_p}", "not excited by the record"),
@@ -189,13 +190,13 @@ def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Es
             "rate limit",
             max(base.rate_limit, 1.2 * speed),
             f"{unit_x}/s",
-            f"never reached: it is above {speed:.3g} {unit_x}/s",
+            f"never reached: it is above {spoken.text(speed, f'{unit_x}/s', 3)}",
         ),
         "travel": (
             "travel",
             max(base.travel, highest),
             unit_x,
-            f"the closed stop was never touched: it is above {highest:.4g} {unit_x}",
+            f"the closed stop was never touched: it is above {spoken.text(highest, unit_x, 4)}",
         ),
     }
     estimates = []
@@ -203,7 +204,7 @@ def _rest(facts: Facts, found: dict[str, Interval], notes: list[str]) -> list[Es
         if name in found:
             estimates.append(Estimate(name, found[name].value, found[name], unit, "fit"))
         else:
-            notes.append(f"{words}: {why}; kept at {default:.4g} {unit}")
+            notes.append(f"{words}: {why}; kept at {spoken.text(default, unit, 4)}")
             estimates.append(Estimate(name, default, None, unit, "kept", why))
     ep = found.get("ep.tau", facts.ep_tau)
     kept = Estimate(

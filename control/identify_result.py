@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -12,6 +12,7 @@ from control.design import DesignModel
 from control.identify_interval import Interval
 from control.identify_readings import fast_noise
 from logs.recording import FloatArray
+from logs.spoken import Spoken
 
 # A residual so many times the noise, and of so much of travel, is no noise; a healthy valve's stays within twice of it.
 MISFIT_NOISES = 5.0
@@ -74,6 +75,13 @@ class Identified:
     def _missing(self, name: str) -> Estimate:
         raise KeyError(name)
 
+    def answered(self) -> Identified:
+        """The same as who asks reads it: numbers and the residual in the units in which the design is spoken of."""
+        spoken = self.design.spoken
+        rms = spoken.value(self.quality.rms, self.design.position_unit)
+        said = tuple(_answered(each, spoken) for each in self.estimates)
+        return replace(self, estimates=said, quality=replace(self.quality, rms=rms))
+
     def to_plain(self) -> Mapping[str, object]:
         """Everything but the predictions, as plain values."""
         return {
@@ -83,6 +91,13 @@ class Identified:
             "fit": asdict(self.quality),
             "notes": list(self.notes),
         }
+
+
+def _answered(each: Estimate, spoken: Spoken) -> Estimate:
+    interval = each.interval
+    if interval is not None:
+        interval = Interval(*(spoken.value(v, each.unit) for v in (interval.value, interval.low, interval.high)))
+    return replace(each, value=spoken.value(each.value, each.unit), interval=interval, unit=spoken.unit(each.unit))
 
 
 def quality_of(residual: FloatArray, position: FloatArray, travel: float) -> Quality:

@@ -44,11 +44,12 @@ def slopes(
 
 def _differ(k1: float, k2: float, a1: float, a2: float, design: DesignModel) -> str:
     """The sentence for curves that are not parallel: with slopes of their own they begin at `a1` and `a2`."""
-    unit, travel = design.pressure_unit, design.travel
+    unit, travel, spoken = design.pressure_unit, design.travel, design.spoken
     closed = a1 - a2 + travel * (1.0 / k1 - 1.0 / k2)
+    begin = f"a1 = {spoken.value(a1, unit):.4g} and a2 = {spoken.text(a2, unit, 4)}"
     return (
         f"k1 and k2 differ by {200.0 * abs(k1 - k2) / (k1 + k2):.2g} %: the curves are not parallel, and the rows a1, "
         "a2, deadband and compliance, which go into the model, are a compromise of one slope. With slopes of their own "
-        f"the curves begin at a1 = {a1:.4g} and a2 = {a2:.4g} {unit}, and the deadband is {a1 - a2:.4g} {unit} at the "
-        f"open end and {closed:.4g} {unit} at the closed end; `diagnose` names causes (spring_asymmetry)"
+        f"the curves begin at {begin}, and the deadband is {spoken.text(a1 - a2, unit, 4)} at the open end and "
+        f"{spoken.text(closed, unit, 4)} at the closed end; `diagnose` names causes (spring_asymmetry)"
     )

@@ -12,6 +12,7 @@ from control.identify_pressure import PressureStage, fit_pressure
 from control.identify_readings import false_readings
 from control.identify_track import Track, first_position
 from logs.recording import FloatArray, Recording
+from logs.spoken import spoken_by
 
 FEWEST_ROWS = 30
 _UNIT_TOLERANCE = 0.01
@@ -55,9 +56,10 @@ def drive_of(
             f"every {recording.period_s:.3g} s; it is kept at {stage.lag_s:.3g} s"
         )
     if not stage.is_calibrated:
+        spoken, unit = spoken_by([recording]), recording.pressure_unit
         notes.append(
-            f"{recording.name}: pressure = {stage.gain:.4f} x command {stage.zero:+.3f}, up to {stage.off:.2g} "
-            f"{recording.pressure_unit} off: {unit_doubt(stage.gain)}the design model has no place for that; "
+            f"{recording.name}: pressure = {stage.gain:.4f} x command {spoken.value(stage.zero, unit):+.3g}, up to "
+            f"{spoken.text(stage.off, unit, 2)} off: {unit_doubt(stage.gain)}the design model has no place for that; "
             "a1 and a2 are what the gauge reads, not what is commanded"
         )
     return stage, grid.fine_time_s, stage.fine

@@ -39,6 +39,7 @@ def command(
     from control.identify import identify
     from control.identify_checks import check_commands
     from hal.errors import BadInput
+    from twin.model_units import as_spoken
 
     if out.suffix != ".toml":
         raise BadInput(f"--out {out}: a model file ends in .toml")
@@ -52,7 +53,7 @@ def command(
     check_commands(found.design, recordings)
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        save_design(found.design, out, comment=_comment(found))
+        save_design(as_spoken(found.design), out, comment=_comment(found.answered()))
     except OSError as error:
         raise BadInput(f"{out}: the model cannot be written ({error.strerror}); name another file") from error
     if plot is not None:
@@ -60,7 +61,7 @@ def command(
     if as_json:
         click.echo(json.dumps({**found.to_plain(), "model": str(out)}))
     else:
-        _print(found, recordings, out)
+        _print(found.answered(), recordings, out)
 
 
 def _draw(found: Identified, recordings: list[Recording], plot: Path) -> None:
@@ -100,7 +101,7 @@ def _print(found: Identified, recordings: list[Recording], out: Path) -> None:
         )
     console().print(table)
     quality = found.quality
-    unit = found.design.position_unit
+    unit = found.design.spoken.unit(found.design.position_unit)
     click.echo(
         f"model against record: RMS {quality.rms:.4g} {unit} = {quality.rms_percent_of_travel:.3f} % of travel, "
         f"fit {quality.fit_percent:.1f} % over {found.rows} rows"

@@ -15,6 +15,7 @@ from control.identify import default_design
 from control.identify_checks import told_positions
 from logs.recording import Recording
 from tests.control.toy_valve import Toy, random_steps, record
+from twin.model_units import in_units_of
 
 TRUTH = {"a1": 8.78, "a2": 5.82, "compliance": 0.19, "tau": 2.7, "rate_limit": 0.12, "travel": 0.5625, "ep.tau": 0.3}
 
@@ -64,8 +65,11 @@ def test_a_strangers_csv_in_its_own_units(tmp_path: Path, capsys: pytest.Capture
     np.savetxt(tmp_path / "x.csv", table, delimiter=",", header="t,u,p,x", comments="")
     words = ["--map", "time=t,command=u,pressure=p,position=x", "--units", "time=ms,command=kPa,position=mm"]
     assert run(["identify", str(tmp_path / "x.csv"), "--out", str(tmp_path / "m.toml"), *words]) == 0
-    design = load_design(tmp_path / "m.toml")
+    given = load_design(tmp_path / "m.toml")
+    assert (given.pressure_unit, given.position_unit) == ("kPa", "mm")
+    design = in_units_of(given, "psi", "in")
     assert (design.a1, design.a2, design.compliance) == pytest.approx((8.78, 5.82, 0.19), rel=0.01)
+    assert "mm/kPa" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
