@@ -68,7 +68,7 @@ def test_other_units_and_no_pressure(healthy: Recording, tmp_path: Path) -> None
     assert found["where"]["stage"] is None
     assert "the E/P and actuator stages cannot be separated" in said(found)
     assert "no --design given: identified from the record" in said(found)
-    assert "a deadband of 2.96 psi, be it play or friction, is in the design" in said(found)
+    assert "a deadband of 20.4 kPa, be it play or friction, is in the design" in said(found)
 
 
 @pytest.mark.thorough
