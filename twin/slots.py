@@ -18,9 +18,7 @@ EP_DEAD_S = 0  # pure delay [s]
 EP_GAIN = 1  # static gain [-]
 EP_ZERO = 2  # zero error [pressure]
 EP_BAND = 3  # half width of the ignored band [pressure]
-EP_BAND_MODE = (
-    4  # 0 none, 1 hold, 2 play, 3 overlap (flow from the edge), 4 overlap (full flow outside), 5 open until EP_SHUT
-)
+EP_BAND_MODE = 4  # 0 none, 1 hold, 2 play, 3 overlap (flow from the edge), 4 (full flow outside), 5 open until EP_SHUT
 EP_TAU_RISE_S = 5
 EP_TAU_FALL_S = 6
 EP_RATE_UP = 7  # [pressure/s]
@@ -65,7 +63,9 @@ EP_MIDDLE = 45  # where the stem is as EP_FULL_UP and EP_FULL_DOWN are the slope
 EP_DEAD_FALLS = 46  # by how much longer a falling command is delayed than EP_DEAD_S, or, < 0, shorter [s]
 EP_WANES = 47  # by what share the lag of a falling pressure is longer for each unit that it is below [1/pressure]
 EP_WANES_BELOW = 48  # this [pressure]
-EP_COUNT = 49
+EP_CYCLE_S = 49  # in which the converter looks at its command [s]; 0: all the time
+EP_SEEN_S = 50  # when it does so, after the first row [s]
+EP_COUNT = 51
 
 # --- valve: pressure to stem ------------------------------------------------------------------------------------
 V_LOW = 0  # lower stop [position]

@@ -15,6 +15,7 @@ from twin.kernels.active import acts
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
+from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.stroke import struck
 from twin.kernels.supply import cut, supplied, supply, zero
@@ -27,6 +28,7 @@ from twin.slots import (
     EP_CLOG_DOWN,
     EP_CLOG_UP,
     EP_CUT,
+    EP_CYCLE_S,
     EP_DEAD_FALLS,
     EP_DEAD_S,
     EP_DRIFTS,
@@ -41,6 +43,7 @@ from twin.slots import (
     EP_RATE_DOWN,
     EP_RATE_UP,
     EP_RINGS_S,
+    EP_SEEN_S,
     EP_SLEW,
     EP_STROKE,
     EP_SUPPLY,
@@ -94,6 +97,9 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
     if c[EP_MIXED_S] > 0.0:
         source, goal = goal, np.empty(size)
         _mixed(time_s, source, offsets, c[EP_MIXED_S], command[0], goal)
+    if c[EP_CYCLE_S] > 0.0:
+        source, goal = goal, np.empty(size)
+        polled(time_s, source, offsets, clock(c, time_s[0]), command[0], goal)
     if c[EP_BAND_MODE] in (1.0, 2.0):
         source, goal = goal, np.empty(goal.size)
         _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
@@ -107,6 +113,11 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         source, goal = goal, np.empty(size)
         ringing_pass(time_s, offsets, source, c, np.array([p0, 0.0]), goal)
     return goal
+
+
+def clock(c: FloatArray, began_s: float) -> tuple[float, float]:
+    """An instant at which a converter looks at its command, and the cycle in which it does [s]."""
+    return float(began_s + c[EP_SEEN_S]), float(c[EP_CYCLE_S])
 
 
 def dead_times_s(c: FloatArray) -> list[float]:

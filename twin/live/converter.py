@@ -17,11 +17,13 @@ from twin.kernels.ep import (
     _slewed,
     boosted,
     bounded,
+    clock,
     dead_times_s,
     latest,
     through_ports,
 )
 from twin.kernels.follow import follow
+from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.stroke import struck
 from twin.kernels.supply import cut, supplied, supply, zero
@@ -31,6 +33,7 @@ from twin.slots import (
     EP_ATMOSPHERE,
     EP_BAND,
     EP_BAND_MODE,
+    EP_CYCLE_S,
     EP_GAIN,
     EP_MIXED_S,
     EP_RINGS_S,
@@ -49,7 +52,7 @@ class Converter:
         self.pressure = p0
         self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
-        self._mixed = command
+        self._mixed = self._seen = command
         self._began_s = time_s
         self._bounded = bounded(c)
         self._aim, self._ringing = p0, np.array([p0, 0.0])
@@ -99,6 +102,9 @@ class Converter:
         if c[EP_MIXED_S] > 0.0:
             source, goal = goal, np.empty(int(offsets[1]) + 1)
             self._mixed = _mixed(time_s, source, offsets, float(c[EP_MIXED_S]), self._mixed, goal)
+        if c[EP_CYCLE_S] > 0.0:
+            source, goal = goal, np.empty(int(offsets[1]) + 1)
+            self._seen = polled(time_s, source, offsets, clock(c, self._began_s), self._seen, goal)
         if c[EP_BAND_MODE] in (1.0, 2.0):
             source, goal = goal, np.empty(goal.size)
             _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
