@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import DataNote, FloatArray, Recording
-from logs.spoken import HOUSE, Spoken
+from logs.spoken import HOUSE, Spoken, of_its_file
 from twin.noise.lattice import lattice_step
 
 #: Round numbers, and how near to one a step has to be, as a share of it.
@@ -26,8 +26,12 @@ _LEVELS, _CHANGES = 30, 8
 
 
 def rounded_by_recorder(recordings: Sequence[Recording], step: float, travel: float) -> bool:
-    """Whether steps of the position, in its unit as `travel` is, are those to which the commands are stored, too."""
-    round_one = any(_is_round(step / whole) for whole in (1.0, travel))
+    """Whether steps of the position, in its unit as `travel` is, are those to which the commands are stored, too.
+
+    They are round in that unit, in percent of travel, or in the unit in which the file was written.
+    """
+    in_file = [of_its_file(each).value(step, each.position_unit) for each in recordings]
+    round_one = any(_is_round(size) for size in (step, step / travel, *in_file))
     return step > 0.0 and step < _COARSEST * travel and round_one and all(_alike(r, step) for r in recordings)
 
 

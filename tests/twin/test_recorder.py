@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from logs.recording import FloatArray, Recording
+from logs.spoken import WRITTEN
 from tests.twin.trials import DESIGN, trial_of
 from twin.noise.model import estimate_noise
 from twin.plant import Plant
@@ -57,6 +60,13 @@ def test_round_is_what_is_round_in_percent_of_travel_or_in_the_unit() -> None:
     inch = stored(0.02, 0.001)
     assert rounded_by_recorder([inch], 0.001, DESIGN.travel)
     assert not rounded_by_recorder([inch], 0.00093, DESIGN.travel)
+
+
+@pytest.mark.parametrize(("written", "round_one"), [("mm", True), ("in", False), ("V(0..10=0..0.5625 in)", False)])
+def test_round_is_what_is_round_in_the_unit_of_the_file(written: str, round_one: bool) -> None:
+    step_in = 0.05 / 25.4
+    one = replace(stored(0.02, step_in), meta={WRITTEN: {"command": "psi", "position": written}})
+    assert rounded_by_recorder([one], step_in, DESIGN.travel) is round_one
 
 
 def test_it_is_said_how_fine_the_record_is() -> None:
