@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from control.design import DesignModel
     from logs.recording import FloatArray, Recording
+    from logs.spoken import Spoken
 
 MOST = 3  # records in one picture
 RECORD, MODEL, REST = "#1f5fa8", "#b5322e", "#8a8a8a"
@@ -53,13 +54,16 @@ def check_target(path: Path, inputs: Iterable[Path | None] = ()) -> None:
 
 
 def draw(path: Path, replays: Sequence[Replay], design: DesignModel, *, curves: bool) -> None:
-    """Draws up to three records; with `curves` also the two curves of `design` among the readings.
+    """Draws up to three records; with `curves` also the two curves of `design` among the readings; all in the units in
+    which one speaks of the design.
 
     Raises: `BadInput` when the file cannot be written.
     """
     from matplotlib.figure import Figure as Canvas
 
-    shown = replays[:MOST]
+    from twin.model_units import as_spoken
+
+    shown, design = [_spoken(each, design.spoken) for each in replays[:MOST]], as_spoken(design)
     rows = 2 * len(shown) + curves
     heights = [2.0, 1.0] * len(shown) + [2.5] * curves
     canvas = Canvas(figsize=(8.0, 0.9 * sum(heights) + 0.6), dpi=100, layout="constrained")
@@ -71,6 +75,20 @@ def draw(path: Path, replays: Sequence[Replay], design: DesignModel, *, curves: 
     if len(replays) > MOST:
         canvas.suptitle(f"the first {MOST} of {len(replays)} records", fontsize=9)
     _save(canvas, path)
+
+
+def _spoken(replay: Replay, spoken: Spoken) -> Replay:
+    run = replay.recording
+    per_p, per_x = spoken.value(1.0, run.pressure_unit), spoken.value(1.0, run.position_unit)
+    said = replace(
+        run,
+        command=run.command * per_p,
+        pressure=None if run.pressure is None else run.pressure * per_p,
+        position=run.position * per_x,
+        pressure_unit=spoken.unit(run.pressure_unit),
+        position_unit=spoken.unit(run.position_unit),
+    )
+    return Replay(said, replay.position * per_x)
 
 
 def _over_time(upper, lower, replay: Replay, travel: float) -> None:  # type: ignore[no-untyped-def]

@@ -6,6 +6,7 @@ MODEL.toml is a design model file, as `identify` and `diagnose` write it; RUN is
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,7 @@ from hal.errors import BadInput
 
 if TYPE_CHECKING:
     from logs.recording import FloatArray, Recording
+    from logs.spoken import Spoken
 
 
 @click.command(name="simulate", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
@@ -42,16 +44,19 @@ def command(
     from app.fit_picture import Replay, check_target, draw
     from app.recordings import load_all
     from control.design import load_design
+    from logs.spoken import spoken_in
     from twin.insert import plant_of
-    from twin.model_units import in_units_of
+    from twin.model_units import as_spoken, in_units_of
     from twin.simulate import simulate_recording
 
     if plot is not None:
         check_target(plot, (model, run))
     design = load_design(model)
     (recording,) = load_all([run], mapping, units, command_timing)
+    spoken = spoken_in(design.pressure_unit, design.position_unit)
     try:
-        plant = plant_of(in_units_of(design, recording.pressure_unit, recording.position_unit))
+        ours = in_units_of(design, recording.pressure_unit, recording.position_unit)
+        plant = plant_of(replace(ours, spoken=spoken))
     except BadInput as error:
         raise BadInput(f"{model}: {error}") from error
     pressure, position = simulate_recording(plant, recording)
@@ -62,10 +67,11 @@ def command(
     if as_json:
         click.echo(json.dumps({"file": str(out), "model": str(plant), **figures}))
         return
-    click.echo(f"{recording.name} through {plant}: {counted(recording.n, 'row')} over {recording.duration_s:.6g} s")
+    said = plant_of(as_spoken(plant.design))
+    click.echo(f"{recording.name} through {said}: {counted(recording.n, 'row')} over {recording.duration_s:.6g} s")
     for note in recording.notes:
         click.echo(f"note: {note.what}: {note.handled}")
-    click.echo(_sentence(recording, figures))
+    click.echo(_sentence(recording, figures, spoken))
     click.echo(f"written: {out}")
 
 
@@ -93,16 +99,16 @@ def _rms(measured: FloatArray, modelled: FloatArray) -> float | None:
     return float(np.sqrt(np.mean((measured[seen] - modelled[seen]) ** 2))) if seen.any() else None
 
 
-def _sentence(recording: Recording, figures: dict[str, float | int | None]) -> str:
+def _sentence(recording: Recording, figures: dict[str, float | int | None], spoken: Spoken) -> str:
     parts = []
     if figures["position_rms"] is not None:
         parts.append(
-            f"position {figures['position_rms']:.4g} {recording.position_unit} "
+            f"position {spoken.text(figures['position_rms'], recording.position_unit, 4)} "
             f"({figures['position_rms_percent_of_travel']:.3g} % of travel"
             + (")" if figures["fit_percent"] is None else f", fit {figures['fit_percent']:.2f} %)")
         )
     if figures["pressure_rms"] is not None:
-        parts.append(f"pressure {figures['pressure_rms']:.3g} {recording.pressure_unit}")
+        parts.append(f"pressure {spoken.text(figures['pressure_rms'], recording.pressure_unit, 3)}")
     through = f"; the model went through {figures['gaps']} gaps with the command after them" if figures["gaps"] else ""
     return f"RMS between model and record: {', '.join(parts)}{through}" if parts else "the record has no readings"
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from app.cli import run
 from control.design import DesignModel, save_design
@@ -71,3 +73,24 @@ def test_unwritable_target(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -
     model, record, _ = write_inputs(tmp_path)
     assert run(["simulate", model, record, "--out", str(tmp_path / "no" / "out.csv")]) == 2
     assert "cannot be written" in capsys.readouterr().err
+
+
+def test_it_speaks_and_draws_in_the_units_of_the_model(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    _, record, out = write_inputs(tmp_path)
+    model = tmp_path / "mm.toml"
+    model.write_text(
+        '[units]\npressure = "kPa"\nposition = "mm"\n[valve]\na1 = 60.5\na2 = 40.1\ncompliance = 0.7\ntravel = 14.3\n'
+        "rate_limit = 3.0\ntau = 2.7\n"
+    )
+    canvases: list[Figure] = []
+    monkeypatch.setattr("app.fit_picture._save", lambda canvas, _path: canvases.append(canvas))
+    assert run(["simulate", str(model), record, "--out", out, "--plot", str(tmp_path / "p.png")]) == 0
+    said = capsys.readouterr().out
+    assert "closes from 60.5 and opens at 40.1 kPa, 0.7 mm/kPa" in said
+    assert re.search(r"position \d+\.\d+ mm \(", said)
+    upper = canvases[0].axes[0]
+    assert upper.get_ylabel() == "position [mm]"
+    modelled = np.genfromtxt(out, delimiter=",", names=True)["position_in"]
+    assert upper.lines[1].get_ydata() == pytest.approx(25.4 * modelled)
