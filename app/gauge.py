@@ -23,7 +23,8 @@ _TICK_S = 0.1
 def ask(profile: str, port: str, commands: str | None) -> list[Pair]:
     """(signal, position [in]) as often as the operator types a position.
 
-    Raises: `BadInput` for `commands` that are no numbers or beyond the limits; what the bench raises.
+    Raises: `BadInput` for `commands` that are no numbers or beyond the limits, and for a line of a pipe that is no
+    position; what the bench raises.
     """
     return _ask_moved(profile, port, commands) if commands is not None else _ask_still(profile, port)
 
@@ -103,9 +104,15 @@ def _held(session: Session, command: float, lines: Iterator[str | None], stop: S
 
 
 def _number(text: str) -> float | None:
+    """None for what the operator may type again. Raises: `BadInput` where nobody types: what follows may belong to
+    another place of the valve."""
+    from hal.errors import BadInput
+
     try:
         return float(text)
-    except ValueError:
+    except ValueError as error:
+        if not sys.stdin.isatty():
+            raise BadInput(f"'{text}' is not a number, and what follows may belong to another reading") from error
         click.echo(f"'{text}' is not a number", err=True)
         return None
 

@@ -32,17 +32,19 @@ def device(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[VirtualD
         yield device
 
 
-def typed(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+def typed(monkeypatch: pytest.MonkeyPatch, text: str, at_terminal: bool = False) -> None:
     ours, theirs = os.pipe()
     os.write(theirs, text.encode())
     os.close(theirs)
-    monkeypatch.setattr(sys, "stdin", os.fdopen(ours))
+    lines = os.fdopen(ours)
+    monkeypatch.setattr(lines, "isatty", lambda: at_terminal)
+    monkeypatch.setattr(sys, "stdin", lines)
 
 
 def test_the_valve_is_moved_from_reading_to_reading_and_vented_at_the_end(
     device: VirtualDevice, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    typed(monkeypatch, "0.11\nhalf\n0.21\n0.41\n")
+    typed(monkeypatch, "0.11\nhalf\n0.21\n0.41\n", at_terminal=True)
     words = ["calibrate", "--port", device.port, "--at", "2,4,8", "--out", str(tmp_path / "new.toml")]
     assert run(words) == 0
     said = capsys.readouterr()
@@ -56,6 +58,22 @@ def test_the_valve_is_moved_from_reading_to_reading_and_vented_at_the_end(
         [-8 + 16 * x / 0.5625 for x in (0.1, 0.2, 0.4)], abs=1e-3
     )
     assert [p[1] for p in calibration.points] == [0.11, 0.21, 0.41]
+
+
+@pytest.mark.parametrize("moved", [["--at", "2,4,8"], []])
+def test_a_line_of_a_pipe_that_is_no_position_ends_it_without_a_calibration(
+    device: VirtualDevice,
+    moved: list[str],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    """The next line may have been meant for the next place of the valve."""
+    typed(monkeypatch, "0.11\nhalf\n0.21\n0.41\n")
+    out = tmp_path / "new.toml"
+    assert run(["calibrate", "--port", device.port, *moved, "--out", str(out)]) == 2
+    assert "'half' is not a number, and what follows may belong to another reading" in capsys.readouterr().err
+    assert device.rig.command == 0.0 and not out.exists()
 
 
 def test_the_operator_may_end_early(
