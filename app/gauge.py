@@ -60,7 +60,7 @@ def _ask_moved(profile: str, port: str, commands: str) -> list[Pair]:
     found = load_profile(profile)
     steps = _commands(commands, found.limits.command_min, found.limits.command_max, found.command_unit)
     Latch.of_port(port).check()
-    click.echo(f"the valve will go to {commands} {found.command_unit}, wait at each, then go to its safe command")
+    click.echo(f"the valve will go to {commands} {found.command_unit}, wait at each, then {found.in_the_end}")
     pairs: list[Pair] = []
     with stop_signals() as stop, open_bench(port, found) as session:
         lines = typed_lines()

@@ -126,6 +126,11 @@ class Profile(Part):
         check_channels(self)
         return self
 
+    @property
+    def in_the_end(self) -> str:
+        """What becomes of the valve when a job is over, for an operator: it will ..., then `in_the_end`."""
+        return "be left at its last command" if self.safe_direction == "hold" else "go to its safe command"
+
     def every_register(self) -> dict[str, Register]:
         """Every register by its place in the file, those of the watchdogs included."""
         aux = self.signals.aux

@@ -43,7 +43,8 @@ def command(
 
     READINGS.csv has the columns `signal` (in the unit of the profile's position register) and `position_in`. Without
     it, the bench at --port is read: type the gauge's position, one a line, and an empty line at the end. With --at the
-    valve is moved from command to command and waits at each for what you type; then it goes to its safe command.
+    valve is moved from command to command and waits at each for what you type; then it goes to its safe command (with a
+    profile that holds it is left).
     """
     from app.gauge import ask
     from hal.clock import utc_now

@@ -41,9 +41,11 @@ def command(
     if not as_json:
         _print(findings)
     if leak:
+        from app.options import profile_of
         from app.session import open_bench
 
-        click.echo("the valve will now be pressurised for half a minute, then go to its safe command", err=as_json)
+        then = profile_of(words["profile"], words["physics"]).in_the_end
+        click.echo(f"the valve will now be pressurised for half a minute, then {then}", err=as_json)
         with open_bench(**words) as session:
             found = pressurise(session)
         findings += found

@@ -26,8 +26,8 @@ def command(
     """Move the valve by hand: STEPs like +0.5 -1 +0.25 (relative) or =8 (absolute), in psi, or percent.
 
     Without STEPs they are read from standard input, one a line, until an empty line or `q`. A step that would leave the
-    limits ends at the limit. At the end the valve goes to its safe command. A line that is no step is said and passed
-    over at a terminal; from a pipe or a file it ends the session with exit code 2.
+    limits ends at the limit. At the end the valve goes to its safe command, or with a profile that holds is left where
+    it is. A line that is no step is said and passed over at a terminal; from a pipe it ends it all with exit code 2.
     """
     from app.hold import hold
     from app.session import open_bench
@@ -39,7 +39,7 @@ def command(
     limits, unit = found.limits, found.command_unit
     click.echo(
         f"the valve will move by your steps, between {limits.command_min:g} and {limits.command_max:g} {unit}, "
-        f"{dwell_s:g} s each, then go to its safe command"
+        f"{dwell_s:g} s each, then {found.in_the_end}"
     )
     if words["port"] is not None:
         Latch.of_port(words["port"]).check()

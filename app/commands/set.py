@@ -25,8 +25,8 @@ def command(
 ) -> None:
     """Hold the valve at VALUE (psi, or percent) and show its readings until Ctrl-C or --hold.
 
-    Then the valve goes to its safe command, as after everything that this program does. With --acknowledge and without
-    VALUE only the emergency stop is lifted, and the valve stays at its safe command.
+    Then the valve goes to its safe command, as after everything that this program does; with a profile that holds it is
+    left where it is. With --acknowledge and without VALUE only the emergency stop is lifted, and the valve stays put.
     """
     from app.hold import hold
     from app.session import open_bench
@@ -46,7 +46,7 @@ def command(
         click.echo("lifting the emergency stop; the valve stays at its safe command")
     else:
         end = "until Ctrl-C" if hold_s is None else f"for {hold_s:g} s"
-        click.echo(f"the valve will go to {value:g} {unit} and be held there {end}, then go to its safe command")
+        click.echo(f"the valve will go to {value:g} {unit} and be held there {end}, then {found.in_the_end}")
     words["real_time"] |= words["port"] is None and hold_s is None
     with stop_signals() as stop, open_bench(**words, acknowledge=acknowledge) as session:
         if value is not None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -15,7 +16,7 @@ from app.cli import cli
 from app.cli import run as run_roof
 from hal.clock import RealClock
 from hal.latch import Latch
-from hal.profile import load_profile
+from hal.profile import FOLDER, load_profile
 from sim_device.physics.catalog import make_physics
 from sim_device.server import VirtualDevice
 
@@ -111,6 +112,17 @@ def test_set_says_what_it_will_do_holds_and_goes_safe(device) -> None:
     )
     assert result.output.rstrip().endswith("the valve is at its safe command")
     assert device.rig.command == 0.0
+
+
+def test_a_bench_that_holds_says_that_the_valve_is_left(tmp_path) -> None:
+    """Nowhere is it promised to go to its safe command, where it does not."""
+    profile = tmp_path / "holds.toml"
+    text = (FOLDER / "virtual.toml").read_text(encoding="utf-8")
+    profile.write_text('safe_direction = "hold"\n' + re.sub(r"(?m)^safe_direction.*$", "", text), encoding="utf-8")
+    for words in (["set", "9", "--hold", "1"], ["jog", "+2", "--dwell", "0.5"]):
+        said = lost(*words, "--profile", str(profile)).output
+        assert "then be left at its last command" in said and "safe command" not in said
+        assert said.rstrip().splitlines()[-1].startswith("the valve is left where it is")
 
 
 def test_set_on_the_virtual_valve_moves_it() -> None:
