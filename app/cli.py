@@ -106,6 +106,8 @@ def _usage(error: click.ClickException) -> str:
     """Bad usage as one sentence that says where the help is."""
     sentence = " ".join(error.format_message().split()).rstrip(".")
     where = error.ctx.command_path if isinstance(error, click.UsageError) and error.ctx else "lostmotion"
+    if isinstance(error, click.NoSuchOption) and error.option_name[1:2].isdigit():
+        return f"'{error.option_name}' is read as an option; a negative number goes behind --, as in `{where} -- -1`"
     link = " See" if sentence.endswith("?") else "; see"
     return f"{sentence[:1].lower()}{sentence[1:]}{link} `{where} --help`"
 

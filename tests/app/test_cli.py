@@ -97,6 +97,10 @@ def test_version(capsys) -> None:
             "lostmotion: invalid value for '--last': 0 is not in the range x>=1; see `lostmotion runs --help`",
         ),
         (["--nosuch"], "lostmotion: no such option '--nosuch'; see `lostmotion --help`"),
+        (
+            ["set", "-1"],
+            "lostmotion: '-1' is read as an option; a negative number goes behind --, as in `lostmotion set -- -1`",
+        ),
     ],
 )  # fmt: skip
 def test_bad_usage_is_one_sentence(capsys, words, sentence) -> None:
