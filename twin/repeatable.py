@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from logs.recording import FloatArray
+from logs.recording import FloatArray, Recording
 from twin.case import Case
 from twin.choose.decide import Decision
 from twin.fit.channel import predict_reading_given_pressure
@@ -21,6 +21,7 @@ from twin.noise.lattice import lattice_step
 from twin.noise.model import LOUD, SignalNoise
 from twin.noise.repeats import find_repeats
 from twin.noise.robust import robust_sigma
+from twin.simulate import simulate_recording
 
 #: Repeats are too different when they differ by many times the resting reading's noise (`LOUD`), and by this share of
 #: travel, or by the pressure that moves the stem so far. Where the pressure is measured, what it does not account for
@@ -91,10 +92,27 @@ def disturbance(case: Case, trials: Sequence[Trial] = (), margin_position: float
     for name, noise, gain, unit in signals:
         if noise is None or noise.source == "repeats":
             continue
+        loud = max(LOUD * noise.sigma, slack / gain)
         between = noise.by_source.get("repeats", 0.0)
-        if between > LOUD * noise.sigma and between * gain > slack:
+        if between > loud and _between(_errors(case), name) > loud:
             return Disturbance(name, between, noise.sigma, unit)
     return _given_the_pressure(case, trials)
+
+
+def _errors(case: Case) -> list[Recording]:
+    """The recordings less what the design makes of their commands: a play keeps how repeats begin differently."""
+    errors = []
+    for recording in case.recordings:
+        pressure, position = simulate_recording(case.base, recording)
+        driven = None if recording.pressure is None else recording.pressure - pressure
+        errors.append(replace(recording, pressure=driven, position=recording.position - position))
+    return errors
+
+
+def _between(recordings: Sequence[Recording], name: str) -> float:
+    """The noise of a signal by what its repeats differ by; 0 without any."""
+    pieces = [piece for pair in find_repeats(recordings) if (piece := pair.difference(name)) is not None]
+    return robust_sigma(np.concatenate(pieces)) if pieces else 0.0
 
 
 def _given_the_pressure(case: Case, trials: Sequence[Trial]) -> Disturbance | None:
@@ -108,8 +126,7 @@ def _given_the_pressure(case: Case, trials: Sequence[Trial]) -> Disturbance | No
         replace(t.recording, position=t.recording.position - predict_reading_given_pressure(case.base, t))
         for t in driven
     ]
-    pieces = [piece for pair in find_repeats(errors) if (piece := pair.difference("position")) is not None]
-    between = robust_sigma(np.concatenate(pieces)) if pieces else 0.0
+    between = _between(errors, "position")
     if between <= max(UNLIKE * resting, MATERIAL_GIVEN_PRESSURE * design.travel):
         return None
     return Disturbance("position", between, resting, design.position_unit)

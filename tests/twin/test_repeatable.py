@@ -104,6 +104,26 @@ def test_a_healthy_valve_has_no_disturbance() -> None:
     assert diagnose([healthy], DesignModel(), (), UP_TO_TWO).diagnosis.verdict == "no_gap"
 
 
+def from_a_stop(psi: float, seed: int, wander: float = 0.0) -> Recording:
+    """A healthy valve that comes from a stop and swings further and further about the middle of its deadband."""
+    t = np.arange(0.0, 300.0, 0.1)
+    command = np.concatenate([np.full(300, psi), 7.3 + 2.0 * t / 300.0 * np.sin(t / 3.0)])
+    trial, true = trial_of(Plant(DESIGN), command)
+    noise = np.random.default_rng(seed).normal(0.0, 6e-4, true.size)
+    swing = wander * np.sin(trial.recording.time_s / 2.9)
+    return replace(trial.recording, position=true + swing + noise)
+
+
+def test_repeats_that_begin_elsewhere_are_no_disturbance() -> None:
+    """A play keeps where it came from as long as nothing swings it further, and the design knows that."""
+    ends = [from_a_stop(3.0, 1), from_a_stop(14.0, 2)]
+    noise = make_case(ends, DESIGN).noise.position
+    assert noise.source != "repeats" and noise.by_source["repeats"] > 5.0 * noise.sigma
+    assert disturbance(make_case(ends, DESIGN)) is None
+    disturbed = [ends[0], from_a_stop(14.0, 2, wander=0.03)]
+    assert disturbance(make_case(disturbed, DESIGN)) is not None
+
+
 def test_a_few_milliseconds_are_timing_and_a_quarter_of_a_second_is_not() -> None:
     late, notes = late_commands(make_case([recorded(0.0, 0.008)], DESIGN))
     assert late[0].values[0] == pytest.approx(0.008, abs=0.002)
