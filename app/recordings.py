@@ -66,7 +66,7 @@ def design_for(
     every = [*recordings, *golden]
     pressure_unit, position_unit = common_units(every)
     if path is not None:
-        return _of_file(path, pressure_unit, position_unit), str(path)
+        return design_of_file(path, pressure_unit, position_unit), str(path)
     model, origin = _without_file(recordings, golden, pressure_unit, position_unit)
     return replace(model, spoken=spoken_by(every)), origin
 
@@ -89,7 +89,8 @@ def bench_design(path: Path) -> DesignModel:
         raise BadInput(f"{path}: {error}") from error
 
 
-def _of_file(path: Path, pressure_unit: str, position_unit: str) -> DesignModel:
+def design_of_file(path: Path, pressure_unit: str, position_unit: str) -> DesignModel:
+    """The design of a file in these units, spoken of in its own. Raises: `BadInput` naming the file."""
     from control.design import load_design
     from logs.spoken import spoken_in
     from twin.model_units import in_units_of

@@ -6,7 +6,6 @@ MODEL.toml is a design model file, as `identify` and `diagnose` write it; RUN is
 from __future__ import annotations
 
 import json
-from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -42,21 +41,17 @@ def command(
     check_file("--out", out, (model, run))
     check_apart({"--out": out, "--plot": plot})
     from app.fit_picture import Replay, check_target, draw
-    from app.recordings import load_all
-    from control.design import load_design
-    from logs.spoken import spoken_in
+    from app.recordings import design_of_file, load_all
     from twin.insert import plant_of
-    from twin.model_units import as_spoken, in_units_of
+    from twin.model_units import as_spoken
     from twin.simulate import simulate_recording
 
     if plot is not None:
         check_target(plot, (model, run))
-    design = load_design(model)
     (recording,) = load_all([run], mapping, units, command_timing)
-    spoken = spoken_in(design.pressure_unit, design.position_unit)
+    design = design_of_file(model, recording.pressure_unit, recording.position_unit)
     try:
-        ours = in_units_of(design, recording.pressure_unit, recording.position_unit)
-        plant = plant_of(replace(ours, spoken=spoken))
+        plant = plant_of(design)
     except BadInput as error:
         raise BadInput(f"{model}: {error}") from error
     pressure, position = simulate_recording(plant, recording)
@@ -67,11 +62,11 @@ def command(
     if as_json:
         click.echo(json.dumps({"file": str(out), "model": str(plant), **figures}))
         return
-    said = plant_of(as_spoken(plant.design))
+    said = plant_of(as_spoken(design))
     click.echo(f"{recording.name} through {said}: {counted(recording.n, 'row')} over {recording.duration_s:.6g} s")
     for note in recording.notes:
         click.echo(f"note: {note.what}: {note.handled}")
-    click.echo(_sentence(recording, figures, spoken))
+    click.echo(_sentence(recording, figures, design.spoken))
     click.echo(f"written: {out}")
 
 
