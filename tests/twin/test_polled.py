@@ -77,6 +77,28 @@ def test_where_nothing_tells_there_is_no_clock() -> None:
     assert not clocks([onsets(replace(still, pressure=None))], 3)
 
 
+def test_delays_that_are_all_alike_are_no_cycle() -> None:
+    """But for the last digits, or for the instants of rows."""
+    one = steps(1)
+    for delay_s, noise_psi in ((0.0, 0.0), (0.4, 0.0), (0.4, 0.02)):
+        pressure, _ = simulate_recording(plant("before the lag", "dead_time", "pure_delay", (delay_s,)), one)
+        noisy = pressure + np.random.default_rng(2).normal(0.0, noise_psi, one.n)
+        found = onsets(replace(one, pressure=noisy))
+        assert found.delays_s.size > 20
+        assert not clocks([found], 3)
+
+
+def test_a_long_record_is_read_where_it_is_enough() -> None:
+    """Of hundreds of thousands of rows, a ramp among them, the spectrum is that of the first answers."""
+    n = 400_000
+    one = steps(1, n)
+    ramp = np.where(one.time_s > 0.5 * one.time_s[-1], 5.0 + (one.time_s % 60.0) / 10.0, one.command)
+    pressure, _ = simulate_recording(slow(0.3), replace(one, command=ramp))
+    found = onsets(replace(one, command=ramp, pressure=pressure))
+    assert found.delays_s.size <= 60
+    assert clocks([found], 1)[0][0] == pytest.approx(CYCLE_S, rel=0.005)
+
+
 @pytest.mark.thorough
 def test_commands_that_wait_for_a_scan_are_a_dead_time() -> None:
     said = diagnose([recorded(1, 0.3), recorded(2, 0.8)], D, (), UP_TO_TWO).diagnosis
