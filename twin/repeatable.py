@@ -89,12 +89,13 @@ def disturbance(case: Case, trials: Sequence[Trial] = (), margin_position: float
         ("position", case.noise.position, 1.0, design.position_unit),
         ("pressure", case.noise.pressure, design.compliance, design.pressure_unit),
     )
+    errors: list[Recording] = []
     for name, noise, gain, unit in signals:
         if noise is None or noise.source == "repeats":
             continue
         loud = max(LOUD * noise.sigma, slack / gain)
         between = noise.by_source.get("repeats", 0.0)
-        if between > loud and _between(_errors(case), name) > loud:
+        if between > loud and _between(errors := errors or _errors(case), name) > loud:
             return Disturbance(name, between, noise.sigma, unit)
     return _given_the_pressure(case, trials)
 

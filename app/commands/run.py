@@ -181,7 +181,6 @@ def _fitted(wanted: Wanted, info: BenchInfo, slew: float | None) -> Controller[A
 
 
 def _job(session: Session, wanted: Wanted, about: dict[str, object]) -> Job:
-
     from app.job import Job
     from control.drive import ControllerDrive
 

@@ -29,7 +29,7 @@ def _curve_at(p: float, grid: tuple[float, float], table: FloatArray) -> float:
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")
-def _held(free: float, held: float, inside: bool, ends: tuple[float, float]) -> float:
+def _unheld(free: float, held: float, inside: bool, ends: tuple[float, float]) -> float:
     """Where the breakaway holds an element, if what the stops keep the play from does not pull at it."""
     return held + min(ends[1], max(ends[0], free)) - free if inside else held
 
@@ -67,7 +67,7 @@ def coupled_start(
         if c[V_BREAKAWAY] > 0.0:
             low = softer * _curve_at(down - c[V_BREAKAWAY], grid, tables[2])
             high = softer * _curve_at(up + c[V_BREAKAWAY], grid, tables[3])
-            stays = _held(bottom, low, inside, ends) <= elements[j] <= _held(top, high, inside, ends)
+            stays = _unheld(bottom, low, inside, ends) <= elements[j] <= _unheld(top, high, inside, ends)
             reach = elements[j] if stays else reach
         elements[j] = max(ends[0], min(ends[1], reach))
         w, over = w + plays[1][j] * elements[j], over + plays[1][j] * (reach - elements[j])
