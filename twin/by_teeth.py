@@ -26,7 +26,7 @@ from twin.fit.space import Cause, Space, cause_starts, make_space
 from twin.plant import Plant
 from twin.stages import StageResult
 
-#: Teeth that are many, and their share that a model without slips may have.
+#: Teeth that are many, and the share of the way that is jumped in all that a model without slips may jump.
 _MANY, _FEW = 10, 0.4
 #: The best hypotheses without slips, which are asked whether they make the teeth.
 _OTHERS = 5
@@ -65,7 +65,7 @@ def slips_note(result: StageResult, pressure_unit: str, spoken: Spoken = HOUSE) 
         f"{name} was recognised by how often and how far: its model jumps {model.count} times, by "
         f"{spoken.text(model.typical, pressure_unit, 2)} in the median instead of "
         f"{spoken.value(seen.typical, pressure_unit):.2g}, and no cause without jumps "
-        "that leaves less makes so many; what it leaves of the error is no measure of it"
+        "that leaves less jumps half as far in all; what it leaves of the error is no measure of it"
     )
     return [DataNote(what, handled)]
 
@@ -82,7 +82,7 @@ def slipping(case: Case, decision: Decision) -> Decision | None:
     found = _likeliest(case, decision, look, seen)
     if found is None or found.mse > _LEAVES * decision.findings.none.mse:
         return None
-    if any(look.of(other.plant).count > _FEW * seen.count for other in _better(decision, found)):
+    if any(look.of(other.plant).total > _FEW * seen.total for other in _better(decision, found)):
         return None
     findings = replace(decision.findings, fits=(*decision.findings.fits, found))
     slips = Slips(seen, look.of(found.plant))

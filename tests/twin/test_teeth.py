@@ -16,6 +16,7 @@ from logs.recording import Recording
 from tests.twin.toy_valve import TRAVEL, Toy, record
 from twin.by_teeth import by_slips, slipping, slips_note
 from twin.case import Case, make_case
+from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
 from twin.choose.findings import Findings
 from twin.choose.score import yardstick_for
@@ -134,6 +135,19 @@ def test_a_stem_that_sticks_by_chance_is_recognised_by_its_slips() -> None:
     (note,) = slips_note(result, "psi")
     assert f"jumps {found.slips.seen.count} times" in note.what
     assert slips_note(StageResult(case, (decision,), case.trials), "psi") == []
+
+
+@pytest.mark.parametrize(("breakaway", "refutes"), [(0.5, True), (0.13, False)])
+def test_another_model_that_jumps_as_far_refutes_slips_and_short_teeth_however_many_do_not(
+    breakaway: float, refutes: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    case, decision = judged(*(record(Random(0.6, 0.15, seed), RAMPS, DT, seed, SIGMA, 0.006) for seed in (5, 6)))
+    channel = decision.findings.channel
+    (jumps,) = (c for c in effect_causes(channel, case.base) if c.form is not None and c.form.name == "one_jump")
+    space = make_space(case.base, [jumps], (), case.scales)
+    other = evaluated(channel, space, np.array([breakaway / space.unknowns[0].unit]))
+    monkeypatch.setattr("twin.by_teeth._better", lambda *_: [other])
+    assert (slipping(case, decision) is None) is refutes
 
 
 def test_what_was_explained_to_its_noise_is_left_alone() -> None:

@@ -64,6 +64,11 @@ class Teeth:
         """Median length [pressure]; 0 where there is none."""
         return float(np.median(self.length)) if self.count else 0.0
 
+    @property
+    def total(self) -> float:
+        """Length [pressure] of all of them together: what a rough model makes may be many, and short."""
+        return float(self.length.sum())
+
 
 @dataclass(frozen=True, slots=True)
 class Slips:
