@@ -124,6 +124,7 @@ def test_runs_experiments_on_the_virtual_bench_one_after_the_other(tmp_path: Pat
     assert not np.array_equal(records[0].position, records[1].position)
 
 
+@pytest.mark.thorough
 def test_the_verb_closes_the_circle_on_the_virtual_bench(tmp_path: Path) -> None:
     words = ["diagnose", "--active", "--budget-minutes", "4.5", "--out", str(tmp_path)]
     said = CliRunner().invoke(cli, words)

@@ -48,9 +48,8 @@ def hold(
 
 def test_it_lands_and_then_nothing_moves() -> None:
     _, off = hold([0.2, 0.4, 0.1])
-    late = off[:, 300:]
-    assert np.abs(late.mean(axis=1)).max() < 0.3
-    assert np.ptp(late, axis=1).max() < 0.1
+    assert np.abs(off[:, 300:].mean(axis=1)).max() < 0.3
+    assert np.ptp(off[:, 300:], axis=1).max() < 0.1
 
 
 def test_it_rests_off_both_edges() -> None:
@@ -168,6 +167,7 @@ def test_what_a_plate_did_is_not_judged_by_late_readings(late_s: float, sticks: 
     assert next_move(target_in=0.2, found=found, grip=stays, late=late).sticks == sticks
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("effects", [{"ep_deadband/play": 0.13}, {"dead_time": 0.2}])
 def test_a_converter_that_does_not_follow_is_not_taken_for_sticking(effects: Mapping[str, float]) -> None:
     assert not any(hold([0.17, 0.39, 0.28], effects, seed=seed)[0].sticks for seed in (4, 5, 6))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from control.design import DesignModel
@@ -97,7 +99,8 @@ def in_small_steps(
         w = min(D.travel, max(0.0, w)) if within else w
         closes = w > x
         stop, share, square = (D.travel, drag[0], throttled[0]) if closes else (0.0, drag[1], throttled[1])
-        free = max(np.roots([square * D.tau_s / D.rate_limit, (1.0 + share) * D.tau_s, -abs(w - x)]).real)
+        linear, quadratic = (1.0 + share) * D.tau_s, square * D.tau_s / D.rate_limit
+        free = 2.0 * abs(w - x) / (linear + math.sqrt(linear**2 + 4.0 * quadratic * abs(w - x)))
         speed = min(free, abs(stop - x) / D.tau_s)
         x += SMALL_S * min(speed, D.rate_limit) * (1.0 if closes else -1.0)
         late += SMALL_S / relax[1] * (x - late)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from itertools import pairwise
 
@@ -84,14 +85,14 @@ def stepped(
     per = round((TIME_S[1] - TIME_S[0]) / h)
     for a, b in pairwise(PRESSURE):
         for k in range(per):
-            turned, p = float(np.mean(held / slips)), a + (b - a) * (k + 0.5) / per
+            turned, p = float((held / slips).sum()) / slips.size, a + (b - a) * (k + 0.5) / per
             behind = min(max(behind, p - wide), p + wide)
             for _ in range(4 if falling[0] else 1):
-                more = falling[0] * np.exp(-((abs(speed) / falling[1]) ** power))
+                more = falling[0] * math.exp(-((abs(speed) / falling[1]) ** power))
                 pull = d.compliance * (behind - d.offset - (0.5 * d.deadband * share + more) * turned)
-                over = pull - np.clip(pull, 0.0, d.travel)
-                speed = np.clip((pull - (1.0 - gives) * over - x) / d.tau_s, -d.rate_limit, d.rate_limit)
+                over = pull - max(0.0, min(d.travel, pull))
+                speed = max(-d.rate_limit, min(d.rate_limit, (pull - (1.0 - gives) * over - x) / d.tau_s))
             new = min(max(x + h * speed, 0.0), d.travel)
-            held, x = np.clip(held + new - x, -slips, slips), new
+            held, x = np.minimum(np.maximum(held + new - x, -slips), slips), new
         rows.append(x)
     return np.array(rows)

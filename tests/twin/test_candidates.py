@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -37,3 +39,10 @@ def test_a_gauge_that_rounds_down_may_be_off_besides(channel: Channel) -> None:
 def test_what_else_was_put_in_for_the_records_sake_is_settled(channel: Channel) -> None:
     late = base("sensor_lag", "first_order", 0.1)
     assert not [c for c in effect_causes(channel, late) if c.name == "sensor_lag"]
+
+
+def test_what_happens_once_is_no_candidate_for_several_recordings(channel: Channel) -> None:
+    several = replace(channel, trials=(*channel.trials, *channel.trials))
+    for looked_at, there in ((channel, True), (several, False)):
+        forms = {c.form.name for c in effect_causes(looked_at) if c.name == "lvdt_drift" and c.form is not None}
+        assert ("wander" in forms) is there and "linear" in forms

@@ -30,7 +30,7 @@ def stepped(load: float, below: float, above: float, h: float = 2e-3) -> FloatAr
             behind = max(p - wide, min(p + wide, behind))
             target = min(max(x, _balance(behind, +1.0, load)), _balance(behind, -1.0, load))
             target = min(max(target, -below), D.travel + above)
-            speed = np.clip((target - x) / D.tau_s, -D.rate_limit, D.rate_limit)
+            speed = max(-D.rate_limit, min(D.rate_limit, (target - x) / D.tau_s))
             x = min(max(x + speed * h, 0.0), D.travel)
         rows.append(x)
     return np.array(rows)

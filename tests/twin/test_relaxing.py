@@ -43,7 +43,7 @@ def stepped(share: float, tail_s: float, per: int = 100) -> FloatArray:
             off = pull - D.a1 - w / K if pull > D.a1 + w / K else min(0.0, pull - D.a2 - w / K)
             w = min(D.travel, max(0.0, w + K * off / (1.0 + share)))
             z += h / tail_s * (w - z)
-            speed = np.clip((w - x) / D.tau_s, -D.rate_limit, D.rate_limit)
+            speed = max(-D.rate_limit, min(D.rate_limit, (w - x) / D.tau_s))
             x = min(D.travel, max(0.0, x + h * speed))
         rows.append(x)
     return np.array(rows)

@@ -62,6 +62,7 @@ def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:
     assert cause.form is not None and cause.form.name in effect("additional_lag").same_as
 
 
+@pytest.mark.thorough
 def test_how_usual_a_size_is() -> None:
     fits = {f.names[0]: f for f in late(0.8).findings.fits if len(f.names) == 1}
     assert log_usual(fits["sensor_lag"]) < log_usual(fits["additional_lag"])  # 0.8 s is long for a filter
@@ -106,6 +107,7 @@ def test_a_lag_of_the_stem_and_one_of_the_sensor_add_up_in_any_order() -> None:
         assert np.abs(readings["both"] - readings[alone]).max() > 0.005
 
 
+@pytest.mark.thorough
 def test_a_set_holds_each_name_once_however_many_forms_of_it_come_near() -> None:
     decision = settled(late(0.8), DecisionRules(), Weights())
     near = [f for f in decision.findings.fits if f.names == ("sensor_lag",)]
