@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from hal.bench import BenchInfo
     from hal.profile import Profile
 
@@ -28,3 +30,13 @@ def check_watchdogs(profile: Profile, period_s: float) -> None:
                 f"a period of {period_s:g} s is too long: the watchdog of device '{name}' vents the valve after "
                 f"{device.watchdog.timeout_s:g} s of silence; at most {WATCHDOG_SHARE:g} of that is safe"
             )
+
+
+def check_files(profile: Profile, out: Path | None, twin: Path | None = None) -> None:
+    """Raises: `BadInput` for a folder of the record, or a model beside the bench, that the run would be refused for."""
+    from app.targets import check_new_run
+    from app.twin_beside import plant_beside
+
+    check_new_run(out)
+    if twin is not None:
+        plant_beside(twin, profile.command_unit)

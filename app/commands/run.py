@@ -94,7 +94,7 @@ def command(
         wanted = Wanted(controller, parse_settings(settings), model, plan, places)
     _check(wanted)
     if dry_run:
-        _preview(wanted, as_json, found, bench["port"])
+        _preview(wanted, as_json, found, **{name: bench[name] for name in ("port", "out", "twin")})
     else:
         _run(wanted, as_json, **{**bench, "profile": found})
 
@@ -208,13 +208,16 @@ def _announce(session: Session, wanted: Wanted, as_json: bool) -> None:
     )
 
 
-def _preview(wanted: Wanted, as_json: bool, profile: Profile, port: str | None) -> None:
-    from app.dry_run import bench_unopened, check_watchdogs
+def _preview(
+    wanted: Wanted, as_json: bool, profile: Profile, *, port: str | None, out: Path | None, twin: Path | None
+) -> None:
+    from app.dry_run import bench_unopened, check_files, check_watchdogs
     from control.preview import duration_words
 
     plan, controller = wanted.plan, wanted.controller
     _fitted(wanted, bench_unopened(profile, port), profile.limits.slew_per_s)
     check_watchdogs(profile, plan.period_s)
+    check_files(profile, out, twin)
     targets = [step.end for step in plan.steps]
     if as_json:
         click.echo(json.dumps({"controller": controller, "targets_in": targets, "duration_s": plan.duration_s}))

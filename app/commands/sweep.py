@@ -69,7 +69,7 @@ def command(
         save_experiment(experiment, write_to)
         click.echo(f"wrote {write_to}")
     elif dry_run:
-        _preview(experiment, first, as_json, found, bench["port"])
+        _preview(experiment, first, as_json, found, bench["port"], bench["out"])
     else:
         _sweep(experiment, first, continues, as_json, **{**bench, "profile": found})
 
@@ -189,14 +189,17 @@ def _announce(session: Session, experiment: Experiment, job: Job, as_json: bool)
     )
 
 
-def _preview(experiment: Experiment, first: int, as_json: bool, profile: Profile, port: str | None) -> None:
-    from app.dry_run import bench_unopened, check_watchdogs
+def _preview(
+    experiment: Experiment, first: int, as_json: bool, profile: Profile, port: str | None, out: Path | None
+) -> None:
+    from app.dry_run import bench_unopened, check_files, check_watchdogs
     from control.plan import check_bench, plan_experiment
     from control.preview import duration_words, with_scale
 
     plan = plan_experiment(experiment, first)
     check_bench(plan, experiment.unit, *experiment.range, bench_unopened(profile, port))
     check_watchdogs(profile, plan.period_s)
+    check_files(profile, out)
     schedule = experiment.commands()
     low, high = experiment.range
     samples = round(plan.duration_s / experiment.period_s)

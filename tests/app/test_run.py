@@ -159,6 +159,8 @@ def test_a_dry_run_touches_nothing(tmp_path: Path, capsys: pytest.CaptureFixture
         (["--period", "3"], "3 s is too long: the watchdog of device 'bench' vents the valve after 2 s of silence"),
         (["--period", "nan"], "--period nan s must be above 0, and finite"),
         (["--profile", "positioner"], "takes percent"),
+        (["--twin", "absent.toml"], "--twin absent.toml: the design model cannot be read"),
+        (["--out", "/proc/r"], "--out /proc/r: no files can be written there"),
     ],
 )
 def test_a_dry_run_is_refused_as_the_run_would_be(

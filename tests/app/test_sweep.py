@@ -78,6 +78,8 @@ def test_a_dry_run_knows_what_the_bench_allows(capsys: pytest.CaptureFixture[str
     assert "3 s is too long: the watchdog of device 'bench'" in capsys.readouterr().err
     assert sweep("staircase", "--set", "high=25", "--dry-run") == 2
     assert "bench 'virtual' allows 0 to 20 psi" in capsys.readouterr().err
+    assert sweep("staircase", "--out", "/proc/r", "--dry-run") == 2
+    assert "--out /proc/r: no files can be written there" in capsys.readouterr().err
 
 
 def test_a_file_is_written_and_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
