@@ -193,7 +193,8 @@ S_SLIPS_OPEN = S_SLIPS + 1  # and opening
 S_SLIPS_ABOVE = S_SLIPS_OPEN + 1  # and the speed from which it slips [position/s]
 S_LESS = S_SLIPS_ABOVE + 1  # by how much narrower than S_PLAY a worn linkage is at places from end to end [position]
 LESS = 4
-S_COUNT = S_LESS + LESS
+S_SOONER = S_LESS + LESS  # share of S_PLAY behind which half the pull of a soft linkage is there; 0: all at once
+S_COUNT = S_SOONER + 1
 
 FOREVER = 1e30
 

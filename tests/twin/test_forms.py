@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from control.design import DesignModel
 from logs.recording import FloatArray
+from tests.twin.judged import a_record, judged
 from tests.twin.test_kernels import excitation, run
 from tests.twin.trials import trial_of
 from twin.catalog import effect
@@ -26,12 +27,20 @@ def plant_with(*effects: tuple[str, str, tuple[float, ...]]) -> Plant:
     return Plant(DESIGN, tuple(Inserted(name, effect(name).form(form), values) for name, form, values in effects))
 
 
-@given(st.sampled_from(["about_open", "about_closed", "about_mid"]), st.floats(-0.2, 0.2), st.floats(0.0, 1.0))
+SHAPES = {
+    "about_open": lambda xi: xi**2,
+    "about_closed": lambda xi: (1.0 - xi) ** 2,
+    "about_mid": lambda xi: (2.0 * xi - 1.0) ** 3,
+    "cubed_about_open": lambda xi: xi**3,
+    "cubed_about_closed": lambda xi: (1.0 - xi) ** 3,
+}
+
+
+@given(st.sampled_from(sorted(SHAPES)), st.floats(-0.2, 0.2), st.floats(0.0, 1.0))
 def test_a_reading_bent_about_a_place_is_right_there(form: str, bend: float, xi: float) -> None:
     c = plant_with(("lvdt_nonlinearity", form, (bend,))).coefficients(1.0).sensor
-    shape = {"about_open": xi**2, "about_closed": (1.0 - xi) ** 2, "about_mid": (2.0 * xi - 1.0) ** 3}[form]
     read = static_reading(np.array([xi * DESIGN.travel]), np.zeros(1), c)[0]
-    assert read == pytest.approx(DESIGN.travel * (xi + bend * shape), abs=1e-12)
+    assert read == pytest.approx(DESIGN.travel * (xi + bend * SHAPES[form](xi)), abs=1e-12)
 
 
 @pytest.mark.parametrize("form", ["about_open", "about_closed"])
@@ -163,3 +172,11 @@ def test_from_where_a_second_spring_helps_each_psi_moves_less(stiffer: float) ->
         x = travel * np.array([0.2, 0.5, 0.7, 0.9])
         needed_psi = start_psi + rate * (x + stiffer * np.maximum(x - 0.6 * travel, 0.0))
         assert np.interp(needed_psi, psi, curve) == pytest.approx(x, abs=2e-3 * travel)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("form", ["cubed_about_open", "cubed_about_closed"])
+def test_a_reading_that_falls_short_with_the_cube_is_one_cause(form: str) -> None:
+    result, judgement = judged(a_record(plant_with(("lvdt_nonlinearity", form, (-0.1,)))))
+    assert [cause.name for cause in judgement.causes] == ["lvdt_nonlinearity"]
+    assert [each.form.name for each in result.plant().inserted] == [form]

@@ -26,7 +26,7 @@ def test_it_is_the_law_in_small_steps(side: float, start: float) -> None:
     stem = 0.2 + 0.1 * np.interp(t, [0, 5, 8, 30, 31, 60], [0, 1, 1, -1, -1, -1])
     c = np.zeros(S_COUNT)
     c[S_PLAY], c[S_SINKS_S] = 0.03, side * 7.0
-    found = core_of(t, stem, c, stem[0] + start)
+    found = core_of(t, stem, c, (stem[0] + start, stem[0] + start))[0]
     e, expected = min(stem[0] + 0.015, max(stem[0] - 0.015, stem[0] + start)), []
     for k in range(t.size):
         e = min(stem[k] + 0.015, max(stem[k] - 0.015, e))

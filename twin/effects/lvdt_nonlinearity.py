@@ -37,6 +37,9 @@ def _parameter(name: str, doc: str) -> Parameter:
     )
 
 
+#: A cube is its line less so much of a bow, and so much of a swing: z - z^3 = z (1 - z) (1.5 - 0.5 (1 - 2 z)).
+_OF_A_CUBE, _SWINGS = 1.5 / 4.0, 0.5 / 10.4
+
 _BOW = _parameter("bow", "excess of the reading at mid travel, fraction of travel")
 _WAVE = _parameter("wave", "amplitude of one wave of a sine, excess at a quarter of travel, fraction of travel")
 _SWING = _parameter("swing", "amplitude of the S-shaped part, excess at 21 % of travel, fraction of travel")
@@ -46,6 +49,11 @@ def _bend(end: str) -> Parameter:
     # A quarter of it is a bow, the rest a line: curves that are the same have to be as likely, in whatever number.
     bend = _parameter("bend", f"excess of the reading at fully {end}, fraction of travel")
     return replace(bend, starts=(-0.04, 0.04), scale=0.08)
+
+
+def _cubed(end: str) -> Parameter:
+    """Three eighths of it are a bow."""
+    return replace(_bend(end), scale=0.02 / _OF_A_CUBE)
 
 
 _LINE = Parameter(
@@ -86,6 +94,15 @@ def _about_open(c: Coefficients, values: Sequence[float]) -> None:
 def _about_closed(c: Coefficients, values: Sequence[float]) -> None:
     """(1 - xi)^2 is 1 - xi less a bow."""
     _bent(c, gain=-values[0], bow=-0.25 * values[0], zero=values[0])
+
+
+def _cubed_open(c: Coefficients, values: Sequence[float]) -> None:
+    _bent(c, gain=values[0], bow=-_OF_A_CUBE * values[0], swing=_SWINGS * values[0])
+
+
+def _cubed_closed(c: Coefficients, values: Sequence[float]) -> None:
+    """The same seen from the other end, where a swing goes the other way."""
+    _bent(c, gain=-values[0], bow=-_OF_A_CUBE * values[0], swing=-_SWINGS * values[0], zero=values[0])
 
 
 def _about_mid(c: Coefficients, values: Sequence[float]) -> None:
@@ -182,7 +199,8 @@ EFFECT = Effect(
     claim="The reading is a curved function of position.",
     equations="y = x + travel (bow 4 xi (1 - xi) + swing 10.4 xi (1 - xi) (1 - 2 xi)), xi = x / travel; "
     "wave: y = x + travel wave sin(2 pi xi); "
-    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubic: u^3 - line u; leaves_range_*: "
+    "about_*: y = x + travel bend s, s = xi^2, (1 - xi)^2 or u^3, u = 2 xi - 1; cubed_*: xi^3 or (1 - xi)^3; "
+    "cubic: u^3 - line u; leaves_range_*: "
     "s is the square of how far the core is beyond its linear range, as a share of what is left of the travel there; "
     "kink: straight from 0 at both ends to the bend; table: straight between entries",
     source="Herceg, Schaevitz Handbook of Measurement and Control (1972); Doebelin, Measurement Systems (McGraw-Hill)",
@@ -193,6 +211,8 @@ EFFECT = Effect(
         Form("bow_and_swing", (_BOW, _SWING), _both),
         Form("about_open", (_bend("closed"),), _about_open),
         Form("about_closed", (_bend("open"),), _about_closed),
+        Form("cubed_about_open", (_cubed("closed"),), _cubed_open),
+        Form("cubed_about_closed", (_cubed("open"),), _cubed_closed),
         Form("about_mid", (_bend("closed"),), _about_mid),
         Form("cubic", (_bend("closed"), _LINE), _cubic),
         Form("leaves_range_closed", _leaving("closed"), _leaves_closed),

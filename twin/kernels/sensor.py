@@ -88,7 +88,7 @@ def sensor_kernel(
         stem = stem - slipped(elapsed_s(time_s, offsets), stem, c)
     core = stem
     if c[S_PLAY] > 0.0:
-        core = core_of(elapsed_s(time_s, offsets), stem, c, first_core(c, stem[0], c[S_CORE]))
+        core, _ = core_of(elapsed_s(time_s, offsets), stem, c, first_core(c, stem[0], c[S_CORE]))
     if filters(c):
         t = elapsed_s(time_s, offsets)
         late = static_reading(core, t, c)

@@ -1,6 +1,6 @@
 """A loose linkage between the stem and the core: the core goes along from the ends of the play, or sinks to one.
 
-It may be worn where the stem is most, and tighter elsewhere.
+It may be worn where the stem is most, and tighter elsewhere; or soft, so that half of its pull is there sooner.
 """
 
 from __future__ import annotations
@@ -11,15 +11,30 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.active import acts
 from twin.kernels.play import plain_play
-from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_TRAVEL
+from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_SOONER, S_TRAVEL
+
+#: Where the core stands: pulled by all of the linkage, and by what of a soft one pulls sooner [position].
+Start = tuple[float, float]
 
 _LESS = np.arange(S_LESS, S_LESS + LESS)
 
 
-def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> FloatArray:
-    """Where the core is, at times `t` [s] like `stem`, from `start`; without play where the stem is."""
+def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: Start) -> tuple[FloatArray, Start]:
+    """Where the core is, at times `t` [s] like `stem`, from `start`, and what it stands at then.
+
+    Without play it is where the stem is. A soft linkage pulls with half of itself from a narrower play on.
+    """
     if c[S_PLAY] <= 0.0:
-        return stem
+        return stem, start
+    core = _pulled(t, stem, c, start[0])
+    if c[S_SOONER] <= 0.0:
+        return core, (float(core[-1]), start[1])
+    sooner = np.empty_like(stem)
+    plain_play(stem, 0.5 * c[S_SOONER] * c[S_PLAY], start[1], sooner)
+    return 0.5 * (core + sooner), (float(core[-1]), float(sooner[-1]))
+
+
+def _pulled(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> FloatArray:
     core = np.empty_like(stem)
     if acts(c, _LESS):
         _worn(stem, 0.5 * c[S_PLAY], 0.5 * c[_LESS], c[S_TRAVEL], start, core)
@@ -30,10 +45,15 @@ def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> Flo
     return core
 
 
-def first_core(c: FloatArray, stem: float, core: float) -> float:
+def first_core(c: FloatArray, stem: float, core: float) -> Start:
     """Where a core begins that is said to be at `core`; not a number: wherever it had the time to go."""
     half = _half_at(stem, 0.5 * float(c[S_PLAY]), 0.5 * c[_LESS], float(c[S_TRAVEL]))
-    return stem + sunk_by(c) if np.isnan(core) else max(stem - half, min(stem + half, core))
+    at = stem + sunk_by(c) if np.isnan(core) else max(stem - half, min(stem + half, core))
+    if c[S_SOONER] <= 0.0:
+        return at, at
+    reach = half * float(c[S_SOONER])
+    sooner = max(stem - reach, min(stem + reach, at))
+    return max(stem - half, min(stem + half, 2.0 * at - sooner)), sooner
 
 
 def sunk_by(c: FloatArray) -> float:

@@ -32,7 +32,7 @@ class Sensor:
         self._filters: list[Lag | Swing] = [*lags, *filters_of_two]
         self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
         self._rows: deque[tuple[float, float]] = deque(
-            [(0.0, float(self._static(np.array([self._core]), np.zeros(1))[0]))]
+            [(0.0, float(self._static(np.array([0.5 * sum(self._core)]), np.zeros(1))[0]))]
         )
 
     @property
@@ -49,8 +49,7 @@ class Sensor:
         if slips(c):
             gone = self._slipped + slipped(t, stem, c)
             stem, self._slipped = stem - gone, float(gone[-1])
-        stem = core_of(t, stem, c, self._core)
-        self._core = float(stem[-1])
+        stem, self._core = core_of(t, stem, c, self._core)
         if filters(c):
             late = self._static(stem, t)
             for one in self._filters:
