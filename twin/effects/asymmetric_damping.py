@@ -44,6 +44,14 @@ def _two_lags_and_rates(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_RATE_OPEN] /= 1.0 - values[0]
 
 
+def _one_way(slot: int) -> Callable[[Coefficients, Sequence[float]], None]:
+    def write(c: Coefficients, values: Sequence[float]) -> None:
+        # What throttles one way, and lets by the other: there the design's time constant is still true.
+        c.valve[slot] *= 1.0 + values[0]
+
+    return write
+
+
 def _lags_and_rates_apart(c: Coefficients, values: Sequence[float]) -> None:
     # What bounds the speed (a vent that chokes, a booster's capacity) need not be what makes the lag.
     _two_lags(c, values)
@@ -100,6 +108,11 @@ def _throttled(way: str) -> Parameter:
     return replace(_parameter(way, doc), lower=0.0, upper=9.0, starts=(0.1, 1.0), scale=0.5)
 
 
+def _longer(way: str) -> Parameter:
+    doc = f"by how much longer the time constant {way} is, as a share of it; the other way it is the design's"
+    return replace(_parameter("longer", doc), upper=4.0, starts=(-0.4, -0.04, 0.04, 0.4, 1.2), scale=0.4)
+
+
 def _drag(way: str) -> Parameter:
     doc = f"what drag adds to the time constant {way}, as a share of it, as long as no stop limits the pull"
     return replace(_parameter(way, doc), starts=(-0.3, -0.03, 0.03, 0.3), scale=0.3)
@@ -119,6 +132,7 @@ EFFECT = Effect(
     stage="actuator",
     claim="The time constants closing and opening differ.",
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
+    "closing_alone, opening_alone: tau (1 + longer) that way; "
     "two_lags_and_rates: rate limit / (1 +- asymmetry), too; two_lags_and_rates_apart: (1 -+ of_the_speeds) of it; "
     "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
     "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit; "
@@ -128,6 +142,8 @@ EFFECT = Effect(
     "Armstrong-Helouvry, Dupont, Canudas de Wit, Automatica 30 (1994) 1083 (viscous friction)",
     forms=(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
+        Form("closing_alone", (_longer("closing"),), _one_way(V_TAU_CLOSE_S)),
+        Form("opening_alone", (_longer("opening"),), _one_way(V_TAU_OPEN_S)),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("two_lags_and_rates_apart", (_ASYMMETRY, _SPEEDS), _lags_and_rates_apart),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),

@@ -1,0 +1,37 @@
+"""A time constant that is longer one way alone: two lags about another mean, and told without accusing that mean."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from tests.twin.judged import a_record
+from tests.twin.loops import D
+from twin.catalog import effect
+from twin.diagnose import diagnose
+from twin.plant import Inserted, Plant
+
+
+def damped(form: str, value: float, tau_s: float = D.tau_s) -> Plant:
+    one = Inserted("asymmetric_damping", effect("asymmetric_damping").form(form), (value,))
+    return Plant(replace(D, tau_s=tau_s), (one,))
+
+
+@given(st.floats(-0.9, 4.0), st.sampled_from([("closing_alone", 1.0), ("opening_alone", -1.0)]))
+def test_it_is_two_lags_about_another_mean(longer: float, form: tuple[str, float]) -> None:
+    mean = 1.0 + 0.5 * longer
+    alone = damped(form[0], longer).coefficients(1.0).valve
+    both = damped("two_lags", form[1] * 0.5 * longer / mean, mean * D.tau_s).coefficients(1.0).valve
+    np.testing.assert_allclose(alone, both, rtol=1e-12)
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize("form", ["closing_alone", "opening_alone"])
+def test_what_is_longer_one_way_alone_accuses_no_time_constant(form: str) -> None:
+    found = diagnose([a_record(damped(form, 1.2), seed=3)], D).diagnosis
+    assert [(cause.name, cause.form) for cause in found.causes] == [("asymmetric_damping", form)]
+    assert found.causes[0].parameters["longer"].value == pytest.approx(1.2, abs=0.05)
