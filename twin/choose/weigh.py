@@ -27,6 +27,8 @@ _AS_DESIGNED, _ABOUT, _ERRORS = 0.0015, 0.01, 2.0
 _COINCIDENCE = 3.0
 #: Nats that a further wrong number has to be worth to count as a hypothesis of its own.
 _COMPANION = 3.0
+#: Causes behind one signal of which hardly all are true.
+_MANY = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,13 +36,15 @@ class Weights:
     """Chosen on the calibration bank. `temperature` divides score differences; `confusable` is the least odds of a twin
     against the accepted cause; `ceiling` is the highest probability ever claimed where something is left of the signal,
     `exact` where its noise is all that is left, `further` that of a cause beside a larger one behind the same signal,
-    `twin_ceiling` that of a cause which no record of these signals can tell from another."""
+    `third` where they are two or more beside it (a form that is not quite true asks for company), `twin_ceiling` that
+    of a cause which no record of these signals can tell from another."""
 
     temperature: float = 10.0
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.97
     further: float = 0.75
+    third: float = 0.5
     twin_ceiling: float = 0.6
 
 
@@ -64,12 +68,12 @@ def weigh(decision: Decision, weights: Weights) -> Weighed:
     raw = {n: float(sum(o for o, f in zip(odds, fits, strict=True) if n in f.names)) for n in names}
     ceiling = weights.exact if decision.exact else weights.ceiling
     probability = {n: min(p, ceiling) for n, p in raw.items()}
-    first = leading(decision)
+    first, beside = leading(decision), weights.further if len(decision.names) < _MANY else weights.third
     for name in decision.names:
         if twins_of(decision.accepted, name):
             probability[name] = min(probability[name], weights.twin_ceiling)
         if name != first:
-            probability[name] = min(probability[name], weights.further)
+            probability[name] = min(probability[name], beside)
     return Weighed(probability, _sets(decision, fits, odds, weights))
 
 
