@@ -146,9 +146,14 @@ class SafeBench:
         return sample
 
     def make_safe(self, reason: str) -> bool:
-        """As the bench does; once it is safe, nobody waits for commands before the next one comes."""
+        """As the bench does; once it is safe, nobody waits for commands before the next one comes.
+
+        That is a first one again: its slew counts from where the bench is then, and not over the time it stood there.
+        """
         self._rest()
-        self._command = self.info.safe_command
+        if self.info.profile.get("safe_direction") != "hold":
+            self._command = self.info.safe_command
+        self._command_s = None
         safe = self.safe = self._bench.make_safe(reason)
         disarm = getattr(self._bench, "disarm", None)
         if safe and disarm is not None:

@@ -156,11 +156,18 @@ def test_one_untrusted_signal_is_enough() -> None:
             rig.tick()
 
 
-def test_slew_counts_from_the_safe_command_after_make_safe() -> None:
+@pytest.mark.parametrize(("direction", "first"), [("vent", 0.1), ("hold", 6.2)])
+def test_slew_counts_from_where_the_bench_is_after_make_safe(
+    direction: str, first: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """And not over the time that it stood there."""
     rig = Rig(LIMITS.model_copy(update={"slew_per_s": 10.0, "command_min": 0.0}))
+    info = replace(rig.fake.info, profile={"safe_direction": direction})
+    monkeypatch.setattr(type(rig.fake), "info", property(lambda _: info))
     with rig.safe:
         rig.tick(0.1)
-        for _ in range(8):
+        for _ in range(6):
             rig.tick(8.0, dt_s=0.1)
         assert rig.safe.make_safe("test")
-        assert rig.tick(8.0).commanded_psi == pytest.approx(1.0)
+        rig.clock.sleep_until(rig.clock.now_s() + 60.0)
+        assert rig.tick(8.0).commanded_psi == pytest.approx(first)
