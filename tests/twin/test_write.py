@@ -5,11 +5,12 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from control.design import DesignModel
 from logs.recording import Recording
 from twin.fit.trial import make_trial
-from twin.write import series_of
+from twin.write import said_of_the_model, series_of
 
 
 def test_only_false_readings_are_not_drawn() -> None:
@@ -35,3 +36,17 @@ def test_only_false_readings_are_not_drawn() -> None:
     assert np.array_equal(series.heldout, trial.use_y)
     assert series.pressure_before is not None and series.pressure_after is not None
     assert (series.pressure_before == 1.0).all() and (series.pressure_after == 2.0).all()
+
+
+@pytest.mark.parametrize(
+    ("verdict", "after", "warned"),
+    [("unexplained", 4.0, True), ("unexplained", 9.0, False), ("unexplained", None, False), ("parameter", 4.0, False)],
+)
+def test_numbers_that_make_up_for_something_unknown_are_not_recommended(
+    verdict: str, after: float | None, warned: bool
+) -> None:
+    known = SimpleNamespace(verdict=verdict, statement="So it is.", gap=SimpleNamespace(before=9.0, after=after))
+    first, *more = said_of_the_model(known).splitlines()  # type: ignore[arg-type]
+    assert first == "So it is."
+    assert bool(more) is warned
+    assert all("nearer to the design given" in line for line in more)
