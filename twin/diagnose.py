@@ -15,6 +15,7 @@ from twin.choose.felt import felt_only
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
 from twin.choose.search_rules import SearchRules
+from twin.choose.switches import switch_notes, without_switches
 from twin.choose.trim import spoken
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights
@@ -113,14 +114,13 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     """The diagnosis; what it finds out on the way is written into `known`."""
     (case, look, sensing, late), settings, result = _found(known, settings, progress)
     rules, weights = settings.rules, settings.weights
-    sure = tuple(felt_only(inside(settled(d, rules, weights), rules)) for d in result.decisions)
+    sure = tuple(without_switches(felt_only(inside(settled(d, rules, weights), rules))) for d in result.decisions)
     result = replace(result, decisions=spoken(sure, weights, bool(sensing.accepted)))
     retuned = retuned_fit(look)
     everything = on_everything(case, result)
     where = whereabouts(case, everything.trials)
     itself = unrest(case, everything, settings.margin.position)
-    missed = result.decisions[0].findings.none.mse
-    gauge = [gauge_note(case, missed, result.denied)] if result.astray else []
+    gauge = [gauge_note(case, result.decisions[0].findings.none.mse, result.denied)] if result.astray else []
     known.notes += [*itself.notes(case), *gauge]
     case = itself.heard(case)
     converter = where.stage["ep"].value if where.stage and not itself.astray else 0.0
@@ -135,6 +135,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
+    known.notes += switch_notes(result.decisions, case.base)
     known.notes += moved_numbers(case.base.design, final.design, [c.name for c in judgement.causes])
     diagnosis = assembled(case, result, judgement, final, where, parts, itself.loud, rules, known.notes)
     floor = diagnosis.gap.noise_floor * case.travel / 100.0
