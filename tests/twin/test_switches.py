@@ -50,6 +50,13 @@ def test_what_only_brings_another_law_along_is_no_cause() -> None:
     assert switch_notes([before], Plant(DESIGN)) == []
 
 
+def test_what_acts_alone_without_a_size_stays() -> None:
+    """Friction that turns over hardly any distance is on the stem all the same."""
+    elastic = ("friction_in_motion", "elastic", (1e-4, 0.0, 0.0))
+    decision = decided(-0.1, elastic)
+    assert without_switches(decision) is decision
+
+
 @pytest.mark.parametrize("others", [(RINGS,), ()])
 def test_what_has_a_size_or_nothing_beside_it_stays(others: tuple[tuple[str, str, tuple[float, ...]], ...]) -> None:
     decision = decided(-0.1 if others else -1e-6, *others)
