@@ -135,7 +135,7 @@ def _diagnosed(known: Known, settings: Settings, progress: Progress) -> Outcome:
     judgement = replace(judgement, causes=known.slack.loosened(judgement.causes))
     where = replace(where, attributed=attributed(case, everything, [c.name for c in judgement.causes]))
     final = _final_plant(case, result, judgement, retuned if retuning_pays(parts) else None, sensing)
-    known.notes += switch_notes(result.decisions, case.base)
+    known.notes += switch_notes(result.decisions, case.base, final)
     known.notes += moved_numbers(case.base.design, final.design, [c.name for c in judgement.causes])
     diagnosis = assembled(case, result, judgement, final, where, parts, itself.loud, rules, known.notes)
     floor = diagnosis.gap.noise_floor * case.travel / 100.0

@@ -36,15 +36,15 @@ def without_switches(decision: Decision) -> Decision:
     return replace(decision, findings=findings, accepted=accepted, rest=decision.rest_of(accepted))
 
 
-def switch_notes(decisions: Sequence[Decision], base: Plant) -> list[DataNote]:
-    """What to say of an effect that is in the updated model, and no cause."""
+def switch_notes(decisions: Sequence[Decision], base: Plant, updated: Plant) -> list[DataNote]:
+    """What to say of an effect that is in the updated model, and no cause; nothing where that model does without."""
     what = "the updated model has {} of next to no size"
     handled = "it brings along the law by which what is named acts, and is no cause"
     return [
         DataNote(what.format(one.effect), handled)
         for decision in decisions
         for one in decision.accepted.space.base.inserted
-        if decision.explained and one not in base.inserted
+        if one in updated.inserted and one not in base.inserted
     ]
 
 
