@@ -19,6 +19,7 @@ from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.kernels.sensor import static_reading
 from twin.plant import Inserted, Plant, curve_tables
+from twin.slots import S_BOW, S_GAIN
 
 DESIGN = DesignModel()
 
@@ -55,6 +56,13 @@ def test_the_same_curve_is_as_likely_in_whatever_number(form: str) -> None:
         return np.asarray(np.diff(read, 2))
 
     np.testing.assert_allclose(np.abs(curved(form)), np.abs(curved("bow")), atol=1e-12)
+
+
+@pytest.mark.parametrize("form", ["cubed_about_open", "cubed_about_closed"])
+def test_a_cube_bows_at_a_standard_deviation_as_much_as_a_bow(form: str) -> None:
+    (cube,), (bow,) = (effect("lvdt_nonlinearity").form(name).parameters for name in (form, "bow"))
+    c = plant_with(("lvdt_nonlinearity", form, (cube.scale,))).coefficients(1.0).sensor
+    assert abs(c[S_GAIN] * c[S_BOW]) == pytest.approx(bow.scale)
 
 
 @pytest.mark.parametrize(
