@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lsim
 
@@ -24,7 +24,6 @@ SIGNAL = 0.3 + np.where(TIME_S > 4.0, 0.2 * np.sin(0.9 * (TIME_S - 4.0)) + 0.01 
 LEVELS = np.repeat([8.0, 9.5, 10.6, 7.2, 8.4, 6.9, 10.2], 300)
 
 
-@settings(deadline=None)
 @given(natural_s=st.floats(0.02, 3.0), damping=st.floats(0.2, 0.98))
 def test_it_is_what_scipy_makes_of_it(natural_s: float, damping: float) -> None:
     poles = ([1.0], [natural_s**2, 2.0 * damping * natural_s, 1.0])
@@ -32,7 +31,6 @@ def test_it_is_what_scipy_makes_of_it(natural_s: float, damping: float) -> None:
     np.testing.assert_allclose(swinging(TIME_S, OFFSETS, SIGNAL, natural_s, damping), 0.3 + wanted, atol=1e-7)
 
 
-@settings(deadline=None)
 @given(natural_s=st.floats(0.02, 3.0), seed=st.integers(0, 1000))
 def test_block_by_block_it_is_the_same(natural_s: float, seed: int) -> None:
     dice = np.random.default_rng(seed)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.twin.judged import UP_TO_TWO
@@ -48,7 +48,6 @@ def test_in_two_parts_it_is_the_same() -> None:
     assert end == last
 
 
-@settings(deadline=None)
 @given(st.floats(-0.02, 0.02))
 def test_it_begins_where_it_is_read_as_far_as_it_can(off: float) -> None:
     wide, narrow = first_core(SOFT, 0.3, 0.3 + off)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import numpy.typing as npt
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
@@ -89,7 +89,6 @@ def judged(*recordings: Recording) -> tuple[Case, Decision]:
     return case, Decision(findings, none, False, True, 1.0)
 
 
-@settings(deadline=None)
 @given(arrays(np.float64, st.integers(2, 60), elements=st.floats(-10, 10)), st.floats(0.01, 5))
 def test_turns_go_up_and_down_by_more_than_the_least(values: FloatArray, least: float) -> None:
     rows = turns(values, least)
