@@ -102,6 +102,7 @@ def test_analyse_one_loop(tmp_path: Path) -> None:
     assert picture.is_file()
 
 
+@pytest.mark.thorough
 def test_analyse_a_sweep_over_dead_time(tmp_path: Path) -> None:
     """The incremental law hunts without dead time and not with half a second of it."""
     table, picture = tmp_path / "gains.csv", tmp_path / "gains.png"

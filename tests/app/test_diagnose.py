@@ -259,6 +259,7 @@ def test_a_sticking_loop_against_a_valve_that_should_follow_one_to_one(tmp_path:
     assert found["where"]["stage"] is None
 
 
+@pytest.mark.thorough
 def test_a_loop_that_shows_no_curve_gives_no_design(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     columns = sticky_loop(rows=300)
     columns["OP (%)"] = np.roll(columns["OP (%)"], 77)  # what the valve was told has nothing to do with what it did

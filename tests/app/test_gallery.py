@@ -24,7 +24,7 @@ DOCS = Path(__file__).parents[2] / "docs"
 made = cache(make)  # some items take seconds
 MINUTES = {"brake", "rivals"}
 QUICK = [key for key in KEYS if key not in MINUTES]
-SECONDS = {"2-8", "3-2", "3-10", "3-12", "beyond"}
+SECONDS = {"1-6", "2-4", "2-7", "2-8", "3-2", "3-4", "3-7", "3-10", "3-12", "beyond"}
 
 
 @pytest.fixture(autouse=True)

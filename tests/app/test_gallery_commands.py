@@ -21,6 +21,7 @@ from logs.load import load_recording
 from logs.run import read_run
 
 PAGE = Path(__file__).parents[2] / "docs" / "thesis.md"
+SECONDS = {"1-5", "1-6", "brake", "rivals"}  # that these take
 FILES = ("RUN", "OTHER", "MODEL.toml", "FILE.csv", "FILE.png")
 # The same with fewer ticks: the arguments are the page's, and what is given twice counts the second time.
 SHORTER = {"sweep": ["--period", "1"], "run": ["--hold", "1.5"], "thesis": ["--json"]}
@@ -53,7 +54,7 @@ def test_every_line_was_found() -> None:
     assert set(KEYS) - set(lines()) <= diagrams
 
 
-@pytest.mark.parametrize("key", lines())
+@pytest.mark.parametrize("key", [pytest.param(k, marks=pytest.mark.thorough if k in SECONDS else ()) for k in lines()])
 def test_a_line_runs_to_its_end(
     key: str, folder: Path, done: dict[str, int], monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

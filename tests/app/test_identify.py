@@ -116,6 +116,7 @@ def test_a_positioners_record_is_refused(tmp_path: Path, capsys: pytest.CaptureF
     assert not (tmp_path / "m.toml").exists()
 
 
+@pytest.mark.thorough
 def test_a_strangers_record_of_a_positioner_is_refused_too(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The file does not say that its commands are positions; that the stem goes where it is told does."""
     levels = np.random.default_rng(1).uniform(20.0, 80.0, 30)

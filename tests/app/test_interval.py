@@ -25,6 +25,7 @@ def test_nothing_tried_is_nothing_known() -> None:
     assert median([])["median"] is None
 
 
+@pytest.mark.thorough
 def test_bootstrap_covers_the_median_of_a_known_population() -> None:
     chance = np.random.default_rng(3)
     inside = 0

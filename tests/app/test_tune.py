@@ -56,6 +56,7 @@ def test_the_describing_function_is_the_more_optimistic_one() -> None:
     assert 1.6 < found.bad <= margins(loop, DESIGN).gain
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize("plant", [Plant(DESIGN, dead_time_s=0.3), Plant(DESIGN, late_s=0.3)])
 def test_delays_that_the_valve_has_already_are_in_its_lasting_margins(plant: Plant) -> None:
     """The first swing that lasts comes at the same 0.8 s in all, and is the same."""

@@ -43,7 +43,9 @@ def test_dead_time_and_supply_count() -> None:
     assert fastest_s(VALVE, Supply(full_psi=9.0), start, 0.4, BAND_IN) == math.inf
 
 
-@pytest.mark.parametrize("far", [0.02, 0.08, 0.3])
+@pytest.mark.parametrize(
+    "far", [pytest.param(0.02, marks=pytest.mark.thorough), pytest.param(0.08, marks=pytest.mark.thorough), 0.3]
+)
 def test_no_sequence_of_random_commands_beats_it(far: float) -> None:
     """Bang-bang with one switch is the optimum: a thousand random piecewise constant commands settle later."""
     rng, start, target = np.random.default_rng(3), (10.2, 0.2), 0.2 + far * VALVE.travel

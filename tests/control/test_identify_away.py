@@ -35,6 +35,7 @@ def sticks() -> Identified:
     return identify([loop(2.0, wandering())])
 
 
+@pytest.mark.thorough
 def test_the_deadband_and_the_slope_of_a_valve_that_sticks(sticks: Identified) -> None:
     for name, truth in (("deadband", 2.0), ("compliance", 2.7)):
         interval = sticks[name].interval
@@ -44,12 +45,14 @@ def test_the_deadband_and_the_slope_of_a_valve_that_sticks(sticks: Identified) -
     assert sticks.quality.rms < 1.15 * NOISE
 
 
+@pytest.mark.thorough
 def test_the_two_curves_are_said_to_hold_together_only(sticks: Identified) -> None:
     assert any("hold together only" in note for note in sticks.notes)
     assert not any("positioner" in note for note in sticks.notes)  # a curve that begins below no pressure is no sign
     assert sticks.design.a1 - sticks.design.a2 == pytest.approx(2.0, abs=0.1)
 
 
+@pytest.mark.thorough
 def test_a_loop_without_play_has_none() -> None:
     found = identify([loop(0.0, wandering())])
     assert found["deadband"].value < 0.1

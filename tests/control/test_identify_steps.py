@@ -41,6 +41,7 @@ def test_steps_into_a_stop_and_out_of_it_do_not_count() -> None:
     assert found.tau_s is None  # the largest and the least of five hold the median in 94 of 100 cases
 
 
+@pytest.mark.thorough
 def test_rows_so_far_apart_that_no_step_shows_its_end_give_none() -> None:
     command = np.repeat([4.0, *np.arange(8.7, 11.5, 0.25)], 45)
     time_s = np.arange(command.size) * 100.0

@@ -16,6 +16,7 @@ from hal.errors import BadInput
 VALVE = DesignModel()
 
 
+@pytest.mark.thorough
 def test_nobody_is_faster_than_the_floor() -> None:
     result = run_job(Job("brake", "ladder", 0, 0.1, VALVE), open_scenario)
     assert 1.0 <= result.score.ratio <= 1.2

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from math import inf, isfinite, sqrt
 
 import numpy as np
 import pytest
@@ -54,17 +55,17 @@ def pressure(one: Plant, stem: FloatArray | None = STEM, step_s: float = 0.02) -
     return pressure_response(one.coefficients(80.0), grid, COMMAND, 6.0, fine)[grid.offsets]
 
 
-def stepped(up_s: float, down_s: float, air: float, supply: float = np.inf, per: int = 300) -> FloatArray:
+def stepped(up_s: float, down_s: float, air: float, supply: float = inf, per: int = 300) -> FloatArray:
     """The same by explicit steps of a third of a millisecond, from the balance of air; `supply`: over 20.3 psi, choked
     all the way."""
-    p, v, rows, ambient = 6.0, 6.0, [6.0], 14.696
-    for i, ((x0, x1), u) in enumerate(zip(pairwise(STEM), COMMAND[1:], strict=True)):
-        h = (TIME_S[i + 1] - TIME_S[i]) / per
-        speed = (x1 - x0) / (TIME_S[i + 1] - TIME_S[i])
+    p, v, rows, ambient, at_rest = 6.0, 6.0, [6.0], 14.696, _out(D.offset)
+    row_s = np.diff(TIME_S).tolist()
+    for (x0, x1), u, long_s in zip(pairwise(STEM.tolist()), COMMAND[1:].tolist(), row_s, strict=True):
+        h, speed = long_s / per, (x1 - x0) / long_s
         for k in range(per):
             v += h * (u - v) / D.ep_tau_s
             opening = min(max((v - p) / WIDE, -1.0), 1.0)
-            flow = opening / up_s * _in(p, supply) if opening > 0 else opening / down_s * _out(p) / _out(D.offset)
+            flow = opening / up_s * _in(p, supply) if opening > 0 else opening / down_s * _out(p) / at_rest
             x = x0 + (k + 0.5) * h * speed
             p += h * (flow - air / D.travel * (p + ambient) * speed) / (1.0 + air / D.travel * x)
             p = min(p, supply)  # what a stem that opens presses together beyond it flows back
@@ -75,16 +76,16 @@ def stepped(up_s: float, down_s: float, air: float, supply: float = np.inf, per:
 def _out(p: float) -> float:
     """ISO 6358-1 with a critical ratio of a half: elliptic below it."""
     ratio = 14.696 / (p + 14.696)
-    return (p + 14.696) * np.sqrt(1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2) if p > 0 else 0.0
+    return (p + 14.696) * sqrt(1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2) if p > 0 else 0.0
 
 
 def _in(p: float, supply: float) -> float:
     """The same from a supply, over what a usual one of 1.38 atmospheres gives while it is choked."""
-    if not np.isfinite(supply):
+    if not isfinite(supply):
         return 1.0
     ratio = (p + 14.696) / (supply + 14.696)
     choked = (supply + 14.696) / (1.38 * 14.696 + 14.696)
-    return choked * np.sqrt(max(0.0, 1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2)) if ratio < 1.0 else 0.0
+    return choked * sqrt(max(0.0, 1.0 - max(0.0, (ratio - 0.5) / 0.5) ** 2)) if ratio < 1.0 else 0.0
 
 
 @pytest.mark.parametrize("values", [(0.05, 0.08, 1.5), (0.3, 0.2, 0.6)])

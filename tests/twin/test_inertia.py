@@ -33,15 +33,18 @@ def stem(inertia_s: float | None, travel: float = 2.0, x0: float = 0.5) -> Float
 def integrated(inertia_s: float) -> FloatArray:
     """The same between the two curves by a step-size controlled integration; the play is fed from its own target."""
     d = DesignModel()
-    fine_s = np.linspace(0.0, TIME_S[-1], 12_000)
+    fine_s = np.linspace(0.0, TIME_S[-1], 12_000).tolist()
     pressure, w, target = np.interp(fine_s, TIME_S, PRESSURE), 0.5, []
-    for p in pressure:
+    for p in pressure.tolist():
         w = max(d.compliance * (p - d.a1), min(d.compliance * (p - d.a2), w))
         target.append(w)
 
     def slope(t: float, state: FloatArray) -> list[float]:
-        pull = np.clip((np.interp(t, fine_s, target) - state[0]) / d.tau_s, -d.rate_limit, d.rate_limit)
-        return [state[1], (pull - state[1]) / inertia_s]
+        position, speed = state.tolist()
+        k = min(int(t / fine_s[1]), len(target) - 2)
+        aim = target[k] + (target[k + 1] - target[k]) * (t / fine_s[1] - k)
+        pull = min(max((aim - position) / d.tau_s, -d.rate_limit), d.rate_limit)
+        return [speed, (pull - speed) / inertia_s]
 
     found = solve_ivp(slope, (0.0, TIME_S[-1]), [0.5, 0.0], t_eval=TIME_S, max_step=0.1, rtol=1e-6, atol=1e-8)
     return np.asarray(found.y[0])

@@ -20,11 +20,11 @@ PRESSURE = np.interp(TIME_S, [0, 10, 16, 28, 33, 40, 46, 53, 60, 80], [6, 13.5, 
 SHARE, LOAD, BELOW, ABOVE = 0.7, 0.28, 0.05, 0.08
 
 
-def stepped(load: float, below: float, above: float, h: float = 2e-3) -> FloatArray:
+def stepped(load: float, below: float, above: float, h: float = 5e-3) -> FloatArray:
     """The same by explicit steps: the play, then the target nearest to the stem that friction allows, then its lag."""
     wide = 0.5 * D.deadband * (1.0 - SHARE)
     behind, x, rows = PRESSURE[0] + wide, 0.0, [0.0]
-    for a, b in pairwise(PRESSURE):
+    for a, b in pairwise(PRESSURE.tolist()):
         for k in range(per := round((TIME_S[1] - TIME_S[0]) / h)):
             p = a + (b - a) * (k + 0.5) / per
             behind = max(p - wide, min(p + wide, behind))
@@ -38,11 +38,11 @@ def stepped(load: float, below: float, above: float, h: float = 2e-3) -> FloatAr
 
 def _balance(p: float, sign: float, load: float) -> float:
     """Where spring and friction balance a pressure, for a stem that closes (1) or opens (-1); found by halving."""
-    low, high = -1.0, 2.0
-    for _ in range(24):
+    low, high, (band, rest) = -0.5, 1.5, (sign * 0.5 * D.deadband, D.offset)
+    for _ in range(18):
         w = 0.5 * (low + high)
-        friction = 0.5 * D.deadband * (SHARE + load * (min(max(w / D.travel, 0.0), 1.0) - 0.5))
-        low, high = (w, high) if p > D.offset + w / D.compliance + sign * friction else (low, w)
+        friction = band * (SHARE + load * (min(max(w / D.travel, 0.0), 1.0) - 0.5))
+        low, high = (w, high) if p > rest + w / D.compliance + friction else (low, w)
     return w
 
 

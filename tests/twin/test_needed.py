@@ -137,6 +137,7 @@ def test_a_number_that_adds_less_than_any_further_cause_would_have_to_is_left_ou
     assert found.names == ("parameter:rate_limit",)
 
 
+@pytest.mark.thorough
 @pytest.mark.parametrize(("prior", "plain"), [(0.0, False), (1e3, True)])
 def test_several_numbers_are_no_plainer_than_an_effect_with_the_better_evidence(prior: float, plain: bool) -> None:
     findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
@@ -147,6 +148,7 @@ def test_several_numbers_are_no_plainer_than_an_effect_with_the_better_evidence(
     assert (found is two) is plain
 
 
+@pytest.mark.thorough
 def test_an_effect_that_spares_the_numbers_nothing_and_explains_no_more_is_no_cause() -> None:
     findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()
     two = next(f for f in findings.fits if len(f.names) == 2 and all(n.startswith("parameter:") for n in f.names))
@@ -163,6 +165,7 @@ def test_an_effect_that_spares_the_numbers_nothing_and_explains_no_more_is_no_ca
     assert instead_of(replace(better, fits=(better.fits[0], works)), works, one, rules) is works
 
 
+@pytest.mark.thorough
 def test_an_effect_that_spares_the_numbers_takes_the_place_of_an_idle_one() -> None:
     """A gain of an unmeasured pressure moves three numbers at once; another effect only brings them along."""
     findings, rules = slipped(0.015)[0].decisions[-1].findings, DecisionRules()

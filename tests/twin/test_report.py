@@ -134,6 +134,7 @@ def test_no_gap_page_on_few_bare_rows() -> None:
     assert "No cause is needed" in page
 
 
+@pytest.mark.thorough
 def test_unexplained_without_pressure_and_with_missing_values(shown: Series) -> None:
     position = shown.position.copy()
     position[100:140] = np.nan

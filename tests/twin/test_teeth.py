@@ -136,7 +136,8 @@ def test_a_stem_that_sticks_by_chance_is_recognised_by_its_slips() -> None:
     assert slips_note(StageResult(case, (decision,), case.trials), "psi") == []
 
 
-@pytest.mark.parametrize(("breakaway", "refutes"), [pytest.param(0.5, True, marks=pytest.mark.thorough), (0.13, False)])
+@pytest.mark.thorough
+@pytest.mark.parametrize(("breakaway", "refutes"), [(0.5, True), (0.13, False)])
 def test_another_model_that_jumps_as_far_refutes_slips_and_short_teeth_however_many_do_not(
     breakaway: float, refutes: bool, monkeypatch: pytest.MonkeyPatch
 ) -> None:

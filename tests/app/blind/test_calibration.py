@@ -50,6 +50,7 @@ def test_boasting_is_not_by_chance() -> None:
     assert honest([(0.9, k < 40) for k in range(80)])["above"] == 0.0
 
 
+@pytest.mark.thorough
 def test_honesty_is_found_out_with_more_claims() -> None:
     few, many = ([(0.8, k < 0.8 * n) for k in range(n)] for n in (20, 500))
     assert honest(few)["mean"] > 3.0 * honest(many)["mean"]

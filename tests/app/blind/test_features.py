@@ -3,6 +3,7 @@ from __future__ import annotations
 import json
 
 import numpy as np
+import pytest
 
 from app.blind.features import decision_features
 from control.design import DesignModel
@@ -13,6 +14,7 @@ from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 
 
+@pytest.mark.thorough
 def test_a_delay_shows_in_the_pressure_channel_alone() -> None:
     command = np.repeat([0.0, 12.0, 6.0, 11.0, 7.0], 120)
     time_s = 0.1 * np.arange(command.size)

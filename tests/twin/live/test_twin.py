@@ -19,7 +19,7 @@ from twin.simulate import Start, simulate_recording
 FORMS = [(name, form.name) for name, effect in effects().items() for form in effect.forms if not form.seen]
 
 
-def jagged_record(n: int = 900) -> Recording:
+def jagged_record(n: int = 600) -> Recording:
     """Steps of all sizes, ramps and rests at an uneven period."""
     chance = np.random.default_rng(5)
     time_s = np.cumsum(0.1 + 0.03 * chance.uniform(-1.0, 1.0, n))
