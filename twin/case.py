@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from control.design import DesignModel
 from logs.recording import DataNote, Recording
+from twin.beginning import beginning
 from twin.effect import Scales
 from twin.fit.trial import Trial, make_trial
 from twin.noise.coarse import Coarse, coarse
@@ -17,7 +18,6 @@ from twin.noise.model import NoiseModel, estimate_noise
 from twin.places import places
 from twin.plant import Inserted, Plant
 from twin.refresh import freshness
-from twin.simulate import beginning
 from twin.timegrid import make_grid
 
 #: Travel over compliance, and travel, of the thesis's valve: the units in which effects state their sizes.
@@ -135,9 +135,8 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
 
 def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    play, stays = beginning(base, recording, make_grid(recording.time_s, step_s))
-    trial = make_trial(recording, step_s, bad, play, freshness(recording) if held else None)
-    return replace(trial, remembers=stays)
+    begun = beginning(base, recording, make_grid(recording.time_s, step_s))
+    return make_trial(recording, step_s, bad, begun, freshness(recording) if held else None)
 
 
 def fine_step_s(design: DesignModel, recording: Recording) -> float:

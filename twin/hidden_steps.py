@@ -26,6 +26,6 @@ def hidden_step_s(case: Case, most_steps: int) -> float:
 
 def _missed(case: Case, step_s: float) -> float:
     """What the design misses of its own reading in such steps: RMS over the rows, as a share of the noise."""
-    coarse = [make_trial(t.recording, step_s, t.false, t.start_play, t.fresh, t.vague) for t in case.trials]
+    coarse = [make_trial(t.recording, step_s, t.false, t.begun, t.fresh, t.vague) for t in case.trials]
     apart = [chain_channel(trials, case.sigma_y).prediction(case.base) for trials in (coarse, case.trials)]
     return float(np.sqrt(np.mean(np.square(apart[0] - apart[1])))) / case.sigma_y

@@ -25,6 +25,8 @@ _LONGEST_S, _SHORTEST_S = 0.02, 0.002
 #: Rows over which the first readings are averaged, and how much better another play output must explain the start.
 _FIRST_ROWS = 5
 _BETTER = 0.8
+#: Pressures that may have been, and by how much the log-likelihood has to gain by one of them.
+_PRESSURES, _SURE = 9, 12.0
 #: Share of travel that is off the target, and of it what two lags later still is where something slow holds the stem.
 _OFF, _STAYS = 0.003, 0.5
 #: By which lag and rate limit of a design may be wrong.
@@ -59,7 +61,8 @@ def simulate_recording(
 ) -> tuple[FloatArray, FloatArray]:
     """Pressure and reading at the rows of `recording`, each of shape (n,), in the recording's units.
 
-    The start pressure is the first pressure reading, or else the first command; the stem starts at the first reading.
+    The start pressure is the first pressure reading, or else the first command, unless the first seconds tell another;
+    the stem starts at the first reading.
     Through a gap the command of the row after it is taken to hold. Raises: `BadInput` for an effect that is unknown.
     """
     plant = design if isinstance(design, Plant) else plant_of(design)
@@ -95,11 +98,19 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     plays = np.linspace(0.0, plant.design.travel, 33).tolist()
     candidates = [rest, *(Start(float(pressure), x, w) for x in stems for w in (x, *plays))]
     head, cut = _head(plant, recording, grid)
-    misses = [_miss(plant, head, cut, one) for one in candidates]
+
+    def miss(one: Start) -> float:
+        return _miss(plant, head, cut, one)
+
+    misses = [miss(one) for one in candidates]
     best = int(np.argmin(misses))
-    if misses[best] >= _BETTER * misses[0]:
-        return rest
-    return _refined(candidates[best], plays[1], lambda one: _miss(plant, head, cut, one))
+    found = rest
+    if misses[best] < _BETTER * misses[0]:
+        near = candidates[best]
+        found = _refined(near, near.play, plays[1], lambda play: replace(near, play=play), miss)
+    if recording.pressure is not None and np.isfinite(recording.pressure).any():
+        return found
+    return _pressed(found, stems, recording, miss, head.n)
 
 
 def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | None:
@@ -112,12 +123,6 @@ def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | Non
     if start.play == start.position or _rests(plant, recording, grid, start):
         return None
     return reading_at(plant.coefficients(recording.duration_s), start.play)
-
-
-def beginning(plant: Plant, recording: Recording, grid: TimeGrid) -> tuple[float | None, bool]:
-    """Towards which reading the valve was moving (`moving_to`), and whether something slow holds it (`remembers`)."""
-    play = moving_to(plant, recording, grid)
-    return play, play is None and remembers(plant, recording, grid)
 
 
 def remembers(plant: Plant, recording: Recording, grid: TimeGrid) -> bool:
@@ -167,14 +172,33 @@ def _head(plant: Plant, recording: Recording, grid: TimeGrid) -> tuple[Recording
     return recording.slice(0, stop), TimeGrid(grid.time_s[:stop], grid.offsets[:stop])
 
 
-def _refined(start: Start, within: float, miss: Callable[[Start], float]) -> Start:
-    """The start with the play output, looked for on a coarse grid, where it explains best."""
-    near = (start.play - within, start.play + within)
+def _pressed(
+    start: Start, stems: list[float], recording: Recording, miss: Callable[[Start], float], rows: int
+) -> Start:
+    """The start with a pressure that explains the first seconds clearly better, where none was measured.
+
+    The command may have changed right before the first row. Any that is given later may have been given then.
+    """
+    pressures = np.linspace(recording.command.min(), recording.command.max(), _PRESSURES).tolist()
+    candidates = [Start(p, x, w) for p in pressures for x in stems for w in {x, start.play}]
+    least = min(candidates, key=miss)
+    if miss(least) * max(np.exp(_SURE / rows), 1.0 / _BETTER) > miss(start):
+        return start
+    step = pressures[1] - pressures[0]
+    return _refined(least, least.pressure, step, lambda pressure: replace(least, pressure=pressure), miss)
+
+
+def _refined(
+    start: Start, at: float, within: float, having: Callable[[float], Start], miss: Callable[[Start], float]
+) -> Start:
+    """The start `having` what explains best: a play output or a pressure, found `at` some value of a coarse grid."""
     found = minimize_scalar(
-        lambda play: miss(replace(start, play=float(play))), bounds=near, method="bounded", options={"maxiter": 15}
+        lambda value: miss(having(float(value))),
+        bounds=(at - within, at + within),
+        method="bounded",
+        options={"maxiter": 15},
     )
-    better = replace(start, play=float(found.x))
-    return better if found.fun < miss(start) else start
+    return having(float(found.x)) if found.fun < miss(start) else start
 
 
 def _seen(values: FloatArray | None, otherwise: float) -> FloatArray:

@@ -15,6 +15,7 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import DataNote, Recording
+from twin.beginning import beginning
 from twin.case import Case, Span, fine_step_s
 from twin.fit.trial import Trial, make_trial
 from twin.hidden_steps import hidden_step_s
@@ -22,7 +23,6 @@ from twin.noise.model import NoiseModel, SignalNoise
 from twin.place import Place
 from twin.refresh import Freshness
 from twin.rows import kept_rows, thinned
-from twin.simulate import beginning
 from twin.stages import StageResult, driven_again
 from twin.timegrid import make_grid
 
@@ -164,9 +164,9 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     thin = thinned(recording, rows)
     false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
-    play, stays = beginning(case.base, thin, make_grid(thin.time_s, step_s))
-    trial = make_trial(thin, step_s, false, play, _fresh_of(whole, span, rows), vague)
-    trial = replace(trial, place=_later(whole, span.start), remembers=stays)
+    begun = beginning(case.base, thin, make_grid(thin.time_s, step_s))
+    trial = make_trial(thin, step_s, false, begun, _fresh_of(whole, span, rows), vague)
+    trial = replace(trial, place=_later(whole, span.start))
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
 
 

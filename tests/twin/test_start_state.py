@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from control.design import DesignModel
 from logs.recording import Recording
+from twin.beginning import beginning
 from twin.catalog import effect
 from twin.fit.channel import predict_reading
 from twin.fit.trial import make_trial
@@ -97,8 +98,8 @@ def test_where_a_valve_was_going_is_known_as_a_reading() -> None:
     plant = Plant(DESIGN, (inserted("lvdt_calibration", "gain", 0.1),))
     record = recorded(plant, np.concatenate([np.full(400, 11.2), np.full(30, 7.1), np.full(400, 8.0)]))
     part = record.slice(445, 830)  # coasting in the middle of the deadband, to where no pressure says
-    trial = make_trial(part, 0.02, start_play=moving_to(Plant(DESIGN), part, make_grid(part.time_s, 0.02)))
-    assert trial.start_play == pytest.approx(part.position[-1], abs=0.001 * DESIGN.travel)
+    trial = make_trial(part, 0.02, begun=beginning(Plant(DESIGN), part, make_grid(part.time_s, 0.02)))
+    assert trial.begun.play == pytest.approx(part.position[-1], abs=0.001 * DESIGN.travel)
     assert np.abs(predict_reading(plant, trial) - part.position).max() < 0.006 * DESIGN.travel
 
 

@@ -53,8 +53,8 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray | None) -> FloatAr
     picked = picked_up(c, trial.start_pressure)
     core = core_at(c, trial.start_position - picked)
     start, c.sensor[S_CORE] = stem_of(c, core), core
-    play = start if trial.start_play is None else stem_at(c, trial.start_play - picked)
-    c.valve[V_REMEMBERS] = trial.remembers
+    play = start if trial.begun.play is None else stem_at(c, trial.begun.play - picked)
+    c.valve[V_REMEMBERS] = trial.begun.remembers
     if pressure is None:
         pressure, stem = chain_response(c, trial.grid, trial.recording.command, trial.start_pressure, start, play)
     else:

@@ -10,6 +10,7 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray, Recording
+from twin.begun import Begun
 from twin.place import ALONE, Place
 from twin.refresh import Freshness
 from twin.timegrid import TimeGrid, make_grid
@@ -32,10 +33,9 @@ class Trial:
     Of those that do not, `false` are false readings of the position, and `vague` rows behind a step of the command at a
     time that nobody knows.
 
-    `start_play` is the reading towards which the valve was moving at the start, None where it stood still.
+    `begun`: what else is known of the state before the first row.
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh`: how fresh each row's reading is, where readings are seen to be held.
-    `remembers`: the stem stood off where the pressure has it, and did not go there (see `twin/simulate.py`).
     `place`: among the recordings of the case.
     `stem` on the fine grid is where the readings have it, for converters that it takes air from; None without pressure.
     """
@@ -44,14 +44,13 @@ class Trial:
     grid: TimeGrid
     start_pressure: float
     start_position: float
-    start_play: float | None
+    begun: Begun
     use_p: npt.NDArray[np.bool_]
     use_y: npt.NDArray[np.bool_]
     false: npt.NDArray[np.bool_]
     vague: npt.NDArray[np.bool_]
     pressure: FloatArray | None = None
     fresh: Freshness | None = None
-    remembers: bool = False
     place: Place = ALONE
     stem: FloatArray | None = None
 
@@ -64,14 +63,16 @@ def make_trial(
     recording: Recording,
     step_s: float,
     bad_rows: npt.NDArray[np.bool_] | None = None,
-    start_play: float | None = None,
+    begun: Begun | None = None,
     fresh: Freshness | None = None,
     vague: npt.NDArray[np.bool_] | None = None,
 ) -> Trial:
     """Prepares a recording; `bad_rows` are false readings of the position that no fit may see.
 
-    `vague`: see `Trial`; found in the recording itself, unless its rows are some of another's.
+    `begun`: the state before the first row, None: as the first row has it, and at rest. `vague`: see `Trial`; found in
+    the recording itself, unless its rows are some of another's.
     """
+    begun = begun or Begun()
     grid = make_grid(recording.time_s, step_s)
     known = np.isfinite(recording.position)
     false = np.zeros_like(known) if bad_rows is None else known & bad_rows
@@ -85,14 +86,12 @@ def make_trial(
         use_y &= ~vague
     steady = _steady_rows(recording.command)
     position = _at_start(recording.position, use_y, steady)
-    pressure = recording.command[0]
+    pressure = recording.command[0] if begun.pressure is None else begun.pressure
     if recording.pressure is not None and np.isfinite(recording.pressure[:50]).any():
         pressure = _at_start(recording.pressure, np.isfinite(recording.pressure), steady)
     stem = None if recording.pressure is None else _stem_as_read(recording, grid, use_y)
-    use_y &= ~early
-    return Trial(
-        recording, grid, float(pressure), position, start_play, use_p, use_y, false, vague, fresh=fresh, stem=stem
-    )
+    use_y &= recording.time_s - recording.time_s[0] >= max(SETTLE_S, begun.unsure_s)
+    return Trial(recording, grid, float(pressure), position, begun, use_p, use_y, false, vague, fresh=fresh, stem=stem)
 
 
 def _stem_as_read(recording: Recording, grid: TimeGrid, use: npt.NDArray[np.bool_]) -> FloatArray | None:

@@ -14,12 +14,12 @@ from twin.kernels.play import plain_play
 from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_SOONER, S_TRAVEL
 
 #: Where the core stands: pulled by all of the linkage, and by what of a soft one pulls sooner [position].
-Start = tuple[float, float]
+CoreState = tuple[float, float]
 
 _LESS = np.arange(S_LESS, S_LESS + LESS)
 
 
-def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: Start) -> tuple[FloatArray, Start]:
+def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: CoreState) -> tuple[FloatArray, CoreState]:
     """Where the core is, at times `t` [s] like `stem`, from `start`, and what it stands at then.
 
     Without play it is where the stem is. A soft linkage pulls with half of itself from a narrower play on.
@@ -45,7 +45,7 @@ def _pulled(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> Flo
     return core
 
 
-def first_core(c: FloatArray, stem: float, core: float) -> Start:
+def first_core(c: FloatArray, stem: float, core: float) -> CoreState:
     """Where a core begins that is said to be at `core`; not a number: wherever it had the time to go."""
     half = _half_at(stem, 0.5 * float(c[S_PLAY]), 0.5 * c[_LESS], float(c[S_TRAVEL]))
     at = stem + sunk_by(c) if np.isnan(core) else max(stem - half, min(stem + half, core))

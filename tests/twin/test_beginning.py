@@ -1,0 +1,77 @@
+"""The pressure before the first row, where none was measured: found in how the stem moves off, and only a guess."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from control.design import DesignModel
+from logs.recording import Recording
+from twin.beginning import beginning
+from twin.begun import Begun
+from twin.catalog import effect
+from twin.fit.trial import SETTLE_S, make_trial
+from twin.plant import Inserted, Plant
+from twin.simulate import Start, simulate_recording
+from twin.timegrid import make_grid
+
+DESIGN = DesignModel()
+NOISE = 0.001 * DESIGN.travel
+#: The command falls in the row before the first; later there is another stroke, which has all of its delay.
+COMMAND = np.concatenate([np.full(300, 11.2), np.full(400, 4.0), np.full(400, 12.0), np.full(400, 6.0)])
+
+
+def recorded(plant: Plant, first: int, pressure: bool = False) -> Recording:
+    """What is recorded from row `first` on."""
+    time_s = np.arange(COMMAND.size) * 0.05
+    blank = Recording("made", time_s, COMMAND, np.zeros(COMMAND.size))
+    p, y = simulate_recording(plant, blank, start=Start(11.2, 0.4, 0.4))
+    y = y + np.random.default_rng(8).normal(0.0, NOISE, y.size)
+    return replace(blank, pressure=p if pressure else None, position=y).slice(first, COMMAND.size)
+
+
+def begun(record: Recording, plant: Plant | None = None) -> Begun:
+    return beginning(plant or Plant(DESIGN), record, make_grid(record.time_s, 0.02))
+
+
+def test_a_command_that_fell_right_before_the_first_row_is_not_the_pressure_yet() -> None:
+    record = recorded(Plant(DESIGN), 300)
+    found = begun(record)
+    fallen = 4.0 + 7.2 * np.exp(-0.05 / DESIGN.ep_tau_s)  # within the row
+    assert found.pressure == pytest.approx(fallen, abs=0.1)
+    assert 2.0 * DESIGN.tau_s < found.unsure_s < 20.0
+    _, again = simulate_recording(DESIGN, record)
+    assert np.std(again - record.position) < 1.05 * NOISE
+    _, at_once = simulate_recording(DESIGN, record, start=Start(4.0, 0.46, 0.46))
+    assert np.std(at_once - record.position) > 3.0 * NOISE
+
+
+@pytest.mark.parametrize(("first", "pressure"), [(290, False), (450, False), (300, True)])
+def test_it_is_the_first_command_or_reading_where_nothing_else_is_seen(first: int, pressure: bool) -> None:
+    """At rest before the step; long after it; measured."""
+    assert begun(recorded(Plant(DESIGN), first, pressure)) == Begun()
+
+
+def test_rows_that_feel_it_count_for_nothing_and_a_delay_is_seen_in_the_next_stroke() -> None:
+    """A delay of the converter and a pressure that has yet to fall look alike in the first stroke."""
+    late = Plant(DESIGN, (Inserted("dead_time", effect("dead_time").form("pure_delay"), (0.3,)),))
+    record = recorded(late, 299)
+    found = begun(record)
+    assert found.pressure is not None
+    trial = make_trial(record, 0.02, begun=found)
+    assert trial.start_pressure == found.pressure
+    since_s = record.time_s - record.time_s[0]
+    assert not trial.use_y[since_s < found.unsure_s].any() and trial.use_y[since_s > found.unsure_s].all()
+    assert make_trial(record, 0.02).use_y[since_s >= SETTLE_S].all()
+    errors = [
+        np.std((simulate_recording(plant, record)[1] - record.position)[trial.use_y]) for plant in (late, Plant(DESIGN))
+    ]
+    assert errors[0] < 1.05 * NOISE and errors[1] > 3.0 * NOISE
+
+
+def test_a_recording_that_would_be_mostly_lost_is_kept() -> None:
+    short = recorded(Plant(DESIGN), 300).slice(0, 420)
+    found = begun(short)
+    assert found.pressure is not None and found.unsure_s == 0.0
