@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -9,33 +10,45 @@ import numpy as np
 from logs.recording import Recording
 from twin.begun import Begun
 from twin.plant import Plant
-from twin.simulate import Start, moving_to, remembers, simulate_recording, start_of
+from twin.simulate import Start, is_measured, moving_to, remembers, simulate_recording, start_of
 from twin.timegrid import TimeGrid
+from twin.under_way import under_way
 
 #: Share of travel by which two starts differ that are told apart, and the most of a recording that they may cost.
-_APART, _MOST = 2e-4, 0.5
+_APART, _MOST = 5e-4, 0.5
+#: Share of travel by which a stem under way is elsewhere a moment later.
+_ELSEWHERE = 0.1
 
 
-def beginning(plant: Plant, recording: Recording, grid: TimeGrid) -> Begun:
-    """How a recording begins, by the design."""
+def beginning(plant: Plant, recording: Recording, grid: TimeGrid, half_step: float = 0.0) -> Begun:
+    """How a recording begins, by the design; a reading says no more than an interval of `half_step` on each side."""
     play = moving_to(plant, recording, grid)
-    stays = play is None and remembers(plant, recording, grid)
-    if recording.pressure is not None and np.isfinite(recording.pressure).any():
-        return Begun(play, stays)
+    begun = Begun(play, play is None and remembers(plant, recording, grid))
     start = start_of(plant, recording, grid)
-    if start.pressure == recording.command[0]:
-        return Begun(play, stays)
-    return Begun(play, stays, start.pressure, _felt_s(plant, recording, start))
+    others = _within(plant, start, half_step) if half_step > 0.0 else []
+    if under_way(plant.design, recording):
+        others += _within(plant, start, _ELSEWHERE * plant.design.travel)
+    if not is_measured(recording) and start.pressure != recording.command[0]:
+        begun = replace(begun, pressure=start.pressure)
+        others.append(replace(start, pressure=float(recording.command[0])))
+    return replace(begun, unsure_s=_felt_s(plant, recording, start, others))
 
 
-def _felt_s(plant: Plant, recording: Recording, start: Start) -> float:
-    """How long it makes a difference that the pressure was not the first command's.
+def _within(plant: Plant, start: Start, far: float) -> list[Start]:
+    """Starts that are not told apart: where the stem stands, within so much, and where to it is on its way."""
+    stems = [start.position + side * far for side in (-1.0, 1.0)]
+    return [replace(start, position=x, play=w) for x in stems for w in (x, 0.0, plant.design.travel)]
 
-    A delay of the converter looks the same there, and may be what is to be found. Nothing where that would cost too
-    much of the recording.
+
+def _felt_s(plant: Plant, recording: Recording, start: Start, others: Sequence[Start]) -> float:
+    """How long it makes a difference which of several starts it was. Nothing where that costs too much of a recording.
+
+    Where the pressure is a guess, a delay of the converter looks the same there, and may be what is to be found.
     """
-    usual = replace(start, pressure=float(recording.command[0]))
-    (_, one), (_, other) = (simulate_recording(plant, recording, start=some) for some in (start, usual))
-    apart = np.flatnonzero(np.abs(one - other) > _APART * plant.design.travel)
-    felt_s = float(recording.time_s[apart[-1]] - recording.time_s[0]) if apart.size else 0.0
+    _, one = simulate_recording(plant, recording, start=start)
+    felt_s = 0.0
+    for other in others:
+        apart = np.abs(simulate_recording(plant, recording, start=other)[1] - one) > _APART * plant.design.travel
+        if apart.any():
+            felt_s = max(felt_s, float(recording.time_s[np.flatnonzero(apart)[-1]] - recording.time_s[0]))
     return felt_s if felt_s < _MOST * recording.duration_s else 0.0

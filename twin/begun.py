@@ -10,7 +10,7 @@ class Begun:
     """`play`: towards which reading the valve was moving, None where it stood still (`twin.simulate.moving_to`).
 
     `remembers`: something slow holds it. `pressure`: what it was, where none was measured and the first command is not
-    it, else None; it is a guess, which is felt for `unsure_s` [s].
+    it, else None. `unsure_s`: how long what is only guessed of all this is felt [s].
     """
 
     play: float | None = None

@@ -114,10 +114,11 @@ def make_case(
     bad = bad_rows or [None] * len(recordings)
     base = Plant(design, tuple(inserted))
     triples = zip(recordings, bad, places(recordings), strict=True)
-    trials = tuple(replace(_trial(base, r, b, held), place=place) for r, b, place in triples)
+    steps = coarse(recordings, step) if sharp else None
+    half = 0.0 if steps is None else steps.half
+    trials = tuple(replace(_trial(base, r, b, held, half), place=place) for r, b, place in triples)
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
-    steps = coarse(recordings, step) if sharp else None
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials, coarse=steps)
 
 
@@ -133,9 +134,9 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
     return replace(case, sigma_y=sigma_y, sigma_p=sigma_p, coarse=steps), max(shares) ** 2
 
 
-def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool) -> Trial:
+def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool, half: float) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    begun = beginning(base, recording, make_grid(recording.time_s, step_s))
+    begun = beginning(base, recording, make_grid(recording.time_s, step_s), half)
     return make_trial(recording, step_s, bad, begun, freshness(recording) if held else None)
 
 

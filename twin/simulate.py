@@ -108,9 +108,14 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     if misses[best] < _BETTER * misses[0]:
         near = candidates[best]
         found = _refined(near, near.play, plays[1], lambda play: replace(near, play=play), miss)
-    if recording.pressure is not None and np.isfinite(recording.pressure).any():
+    if is_measured(recording):
         return found
     return _pressed(found, stems, recording, miss, head.n)
+
+
+def is_measured(recording: Recording) -> bool:
+    """Whether there is any reading of the pressure."""
+    return recording.pressure is not None and bool(np.isfinite(recording.pressure).any())
 
 
 def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | None:

@@ -16,6 +16,7 @@ from twin.fit.trial import SETTLE_S, make_trial
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording
 from twin.timegrid import make_grid
+from twin.under_way import under_way
 
 DESIGN = DesignModel()
 NOISE = 0.001 * DESIGN.travel
@@ -48,10 +49,42 @@ def test_a_command_that_fell_right_before_the_first_row_is_not_the_pressure_yet(
     assert np.std(at_once - record.position) > 3.0 * NOISE
 
 
-@pytest.mark.parametrize(("first", "pressure"), [(290, False), (450, False), (300, True)])
-def test_it_is_the_first_command_or_reading_where_nothing_else_is_seen(first: int, pressure: bool) -> None:
-    """At rest before the step; long after it; measured."""
-    assert begun(recorded(Plant(DESIGN), first, pressure)) == Begun()
+@pytest.mark.parametrize("first", [290, 450, 560])
+def test_it_is_the_first_command_where_nothing_else_is_seen(first: int) -> None:
+    """At rest before the step; on its way; at rest again."""
+    assert begun(recorded(Plant(DESIGN), first)).pressure is None
+
+
+@pytest.mark.parametrize("pressure", [True, False])
+@pytest.mark.parametrize(
+    ("first", "moves"), [(290, False), (300, True), (320, True), (380, True), (560, False), (690, False)]
+)
+def test_a_valve_is_under_way_while_the_command_stands_still_and_something_moves(
+    first: int, moves: bool, pressure: bool
+) -> None:
+    record = recorded(Plant(DESIGN), first, pressure)
+    assert under_way(DESIGN, record) is moves
+    assert (begun(record).unsure_s > 0.0) is moves
+
+
+def test_false_readings_and_noise_move_nothing() -> None:
+    record = recorded(Plant(DESIGN), 100, pressure=True)
+    assert record.pressure is not None
+    position, pressure = record.position.copy(), record.pressure + np.random.default_rng(9).normal(0.0, 0.2, record.n)
+    position[[0, 27]], position[4] = 0.0, np.nan
+    assert not under_way(DESIGN, replace(record, position=position, pressure=pressure))
+    assert not under_way(DESIGN, record.slice(0, 4))
+
+
+def test_the_lag_behind_the_gauge_is_no_part_of_the_first_reading() -> None:
+    """What a chamber that fills slowly has left of an earlier command is in no reading: such rows count for nothing."""
+    lag = Plant(DESIGN, (Inserted("additional_lag", effect("additional_lag").form("before_play"), (0.8,)),))
+    record = recorded(lag, 303, pressure=True)
+    use = make_trial(record, 0.02, begun=begun(record)).use_y
+    _, again = simulate_recording(lag, record)
+    off = again - record.position
+    assert np.std(off[use]) < 1.05 * NOISE
+    assert np.std(off[record.time_s - record.time_s[0] >= SETTLE_S]) > 3.0 * NOISE
 
 
 def test_rows_that_feel_it_count_for_nothing_and_a_delay_is_seen_in_the_next_stroke() -> None:
@@ -75,3 +108,16 @@ def test_a_recording_that_would_be_mostly_lost_is_kept() -> None:
     short = recorded(Plant(DESIGN), 300).slice(0, 420)
     found = begun(short)
     assert found.pressure is not None and found.unsure_s == 0.0
+
+
+def test_what_a_coarse_reading_leaves_open_counts_for_nothing() -> None:
+    """A stem under way, read in steps of 5 %: the first code is 2.5 % of travel off, and where it goes is not known."""
+    record = recorded(Plant(DESIGN), 330, pressure=True)
+    step = 0.05 * DESIGN.travel
+    coarse = replace(record, position=step * np.round(record.position / step))
+    found = beginning(Plant(DESIGN), coarse, make_grid(coarse.time_s, 0.02), 0.5 * step)
+    assert 5.0 < found.unsure_s < 30.0
+    use = make_trial(coarse, 0.02, begun=found).use_y
+    _, model = simulate_recording(DESIGN, coarse)
+    beyond = np.abs(model - coarse.position) > 0.5 * step + 3.0 * NOISE
+    assert not (beyond & use).any()
