@@ -7,8 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from logs.recording import Recording
+from logs.recording import DataNote, Recording
 from twin.begun import Begun
+from twin.fit.trial import Trial
 from twin.plant import Plant
 from twin.simulate import Start, is_measured, moving_to, remembers, simulate_recording, start_of
 from twin.timegrid import TimeGrid
@@ -32,6 +33,17 @@ def beginning(plant: Plant, recording: Recording, grid: TimeGrid, half_step: flo
         begun = replace(begun, pressure=start.pressure)
         others.append(replace(start, pressure=float(recording.command[0])))
     return replace(begun, unsure_s=_felt_s(plant, recording, start, others))
+
+
+def start_notes(trials: Sequence[Trial]) -> list[DataNote]:
+    """What to say of recordings whose first rows are left out for the state before them."""
+    unsure = [t for t in trials if t.begun.unsure_s > 0.0]
+    if not unsure:
+        return []
+    lost = sum(int(np.count_nonzero(t.recording.time_s - t.recording.time_s[0] < t.begun.unsure_s)) for t in unsure)
+    what = f"{len(unsure)} of {len(trials)} recordings begin under way, in a state that their first rows do not tell"
+    longest_s = max(t.begun.unsure_s for t in unsure)
+    return [DataNote(what, f"rows that still feel it, up to {longest_s:.0f} s of a recording, are not compared", lost)]
 
 
 def _within(plant: Plant, start: Start, far: float) -> list[Start]:

@@ -9,6 +9,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.admit import admit
 from twin.assemble import assembled
+from twin.beginning import start_notes
 from twin.by_condition import gap_by_condition
 from twin.case import Case, Margin, make_case, widened
 from twin.choose.felt import felt_only
@@ -224,6 +225,7 @@ def _prepared(known: Known, settings: Settings, progress: Progress, repeats: boo
     late, late_notes = late_commands(look_at(known.case)[0])
     known.case = case = replace(known.case, base=Plant(design, (*case.base.inserted, *late)))
     look, look_notes = look_at(case)
+    known.notes += start_notes(case.trials)
     known.notes += [*late_notes, *look_notes, *lacking_codes(recordings, sensing), *heavy_tail(sensing)]
     known.notes += [recorder_note(recordings, sensing.step, design.spoken)] if sensing.recorded else []
     return case, look, sensing, tuple(late)

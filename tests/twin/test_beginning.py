@@ -9,7 +9,7 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import Recording
-from twin.beginning import beginning
+from twin.beginning import beginning, start_notes
 from twin.begun import Begun
 from twin.catalog import effect
 from twin.fit.trial import SETTLE_S, make_trial
@@ -121,3 +121,12 @@ def test_what_a_coarse_reading_leaves_open_counts_for_nothing() -> None:
     _, model = simulate_recording(DESIGN, coarse)
     beyond = np.abs(model - coarse.position) > 0.5 * step + 3.0 * NOISE
     assert not (beyond & use).any()
+
+
+def test_it_is_said_how_many_rows_that_costs() -> None:
+    moving, still = (recorded(Plant(DESIGN), first, pressure=True) for first in (300, 290))
+    trials = [make_trial(record, 0.02, begun=begun(record)) for record in (moving, still)]
+    (note,) = start_notes(trials)
+    assert note.what.startswith("1 of 2 recordings begin under way")
+    assert note.rows == np.count_nonzero(moving.time_s - moving.time_s[0] < trials[0].begun.unsure_s)
+    assert start_notes(trials[1:]) == []
