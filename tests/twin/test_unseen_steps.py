@@ -44,3 +44,15 @@ def test_where_nearly_everything_would_go_nothing_goes() -> None:
     time_s = EVEN[np.random.default_rng(4).uniform(size=EVEN.size) < 0.5]
     restless = Recording("r", time_s, np.random.default_rng(5).uniform(4.0, 12.0, time_s.size), np.zeros(time_s.size))
     assert not after_unseen_steps(restless).any()
+
+
+def test_a_clock_that_trembles_by_a_quarter_has_no_holes() -> None:
+    """As many of its times between rows are long as short ones are short: all that a step moved had been left out."""
+    rng = np.random.default_rng(6)
+    time_s = EVEN + 0.043 * rng.uniform(-1.0, 1.0, EVEN.size)
+    steps = np.repeat(rng.uniform(4.0, 12.0, 20), 50)
+    restless = Recording("r", time_s, steps, np.zeros(EVEN.size))
+    assert not after_unseen_steps(restless).any()
+    hole = (time_s > 48.0) & (time_s < 50.0)
+    missing = after_unseen_steps(Recording("r", time_s[~hole], steps[~hole], np.zeros(np.count_nonzero(~hole))))
+    assert missing.any() and not missing[time_s[~hole] < 48.0].any()

@@ -20,6 +20,9 @@ SETTLE_S = 3.0
 #: Share of the command's span that is a step; in times of the short intervals, one in which rows are missing; the
 #: largest share of rows that steps at unknown times may cost.
 _STEP, _LATE, _MOST = 0.02, 1.6, 0.5
+#: By how much times between rows are off whole periods, and the share of them of a clock that does not tremble; the
+#: longest times of one that trembles by a quarter, in the middle ones.
+_WHOLE, _REGULAR, _LONG = 0.15, 0.7, 1.9
 #: So many readings on one side of the first four are neither of these nor a few outliers.
 _BACK = 5
 #: Standard deviation of the bell that takes the noise off the readings, for how fast they move.
@@ -115,11 +118,20 @@ def after_unseen_steps(recording: Recording) -> npt.NDArray[np.bool_]:
         return none
     since_s = np.diff(recording.time_s, prepend=recording.time_s[0])
     step = np.abs(np.diff(recording.command, prepend=recording.command[0]))
-    late = since_s > _LATE * np.percentile(since_s[1:], 10.0)
+    late = since_s > _longest_s(since_s[1:])
     unseen = late & (step > _STEP * np.ptp(recording.command))
     last_s = np.maximum.accumulate(np.where(unseen, recording.time_s, -np.inf))
     vague = recording.time_s - last_s < SETTLE_S
     return np.asarray(vague) if vague.mean() < _MOST else none
+
+
+def _longest_s(between_s: FloatArray) -> float:
+    """Time between rows beyond which some are missing: by the short ones where all are whole periods, however many are
+    missing; of a clock that trembles those are no measure."""
+    short_s = float(np.percentile(between_s, 10.0))
+    off = np.abs(between_s / short_s - np.round(between_s / short_s))
+    trembles = np.mean(off < _WHOLE) < _REGULAR
+    return _LONG * float(np.median(between_s)) if trembles else _LATE * short_s
 
 
 def _steady_rows(command: FloatArray) -> int:
