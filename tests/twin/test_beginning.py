@@ -11,6 +11,7 @@ from control.design import DesignModel
 from logs.recording import Recording
 from twin.beginning import beginning, start_notes
 from twin.begun import Begun
+from twin.case import make_case
 from twin.catalog import effect
 from twin.fit.trial import SETTLE_S, make_trial
 from twin.plant import Inserted, Plant
@@ -130,3 +131,15 @@ def test_it_is_said_how_many_rows_that_costs() -> None:
     assert note.what.startswith("1 of 2 recordings begin under way")
     assert note.rows == np.count_nonzero(moving.time_s - moving.time_s[0] < trials[0].begun.unsure_s)
     assert start_notes(trials[1:]) == []
+
+
+def test_a_coarse_reading_of_a_stem_at_rest_leaves_open_where_it_rests() -> None:
+    record = recorded(Plant(DESIGN), 250, pressure=True)
+    step = 0.05 * DESIGN.travel
+    coarse = replace(record, position=step * np.round(record.position / step))
+    assert not under_way(DESIGN, coarse)
+    blurred, sharp = (make_case([coarse], DESIGN, step=step, sharp=sharp).trials[0] for sharp in (False, True))
+    assert blurred.begun.unsure_s == 0.0
+    assert 5.0 < sharp.begun.unsure_s < 30.0
+    since_s = record.time_s - record.time_s[0]
+    assert np.array_equal(sharp.use_y, since_s >= sharp.begun.unsure_s)
