@@ -55,7 +55,7 @@ def test_the_margin_is_what_is_missed_beyond_the_noise(golden: Recording) -> Non
     assert golden.pressure is not None
     exact = healthy_margin([golden], Plant(DesignModel(), (CREEP,)))
     assert exact.position < 2e-4 and exact.pressure < 2e-3
-    off = replace(golden, position=golden.position + 0.004 * np.sign(np.sin(golden.time_s)), pressure=None)
+    off = replace(golden, position=golden.position + 0.004 * np.sign(np.sin(0.1 * golden.time_s)), pressure=None)
     assert healthy_margin([off], Plant(DesignModel(), (CREEP,))).position == pytest.approx(0.004, rel=0.1)
     assert healthy_margin([off], Plant(DesignModel(), (CREEP,))).pressure == 0.0
 
