@@ -10,6 +10,7 @@ import numpy as np
 from logs.recording import DataNote, Recording
 from twin.begun import Begun
 from twin.fit.trial import Trial
+from twin.noise.coarse import Coarse
 from twin.plant import Plant
 from twin.simulate import Start, is_measured, moving_to, remembers, simulate_recording, start_of
 from twin.timegrid import TimeGrid
@@ -21,12 +22,12 @@ _APART, _MOST = 5e-4, 0.5
 _ELSEWHERE = 0.1
 
 
-def beginning(plant: Plant, recording: Recording, grid: TimeGrid, half_step: float = 0.0) -> Begun:
-    """How a recording begins, by the design; a reading says no more than an interval of `half_step` on each side."""
-    play = moving_to(plant, recording, grid)
-    begun = Begun(play, play is None and remembers(plant, recording, grid))
+def beginning(plant: Plant, recording: Recording, grid: TimeGrid, coarse: Coarse | None = None) -> Begun:
+    """How a recording begins, by the design; a coarse reading says no more than an interval."""
     start = start_of(plant, recording, grid)
-    others = _within(plant, start, half_step) if half_step > 0.0 else []
+    play = moving_to(plant, recording, grid, start)
+    begun = Begun(play, play is None and remembers(plant, recording, grid))
+    others = [] if coarse is None else _within(plant, start, coarse.half)
     if under_way(plant.design, recording):
         others += _within(plant, start, _ELSEWHERE * plant.design.travel)
     if not is_measured(recording) and start.pressure != recording.command[0]:
@@ -41,7 +42,7 @@ def start_notes(trials: Sequence[Trial]) -> list[DataNote]:
     if not unsure:
         return []
     lost = sum(int(np.count_nonzero(t.recording.time_s - t.recording.time_s[0] < t.begun.unsure_s)) for t in unsure)
-    what = f"{len(unsure)} of {len(trials)} recordings begin under way, in a state that their first rows do not tell"
+    what = f"{len(unsure)} of {len(trials)} recordings begin in a state that their first rows do not tell"
     longest_s = max(t.begun.unsure_s for t in unsure)
     return [DataNote(what, f"rows that still feel it, up to {longest_s:.0f} s of a recording, are not compared", lost)]
 

@@ -115,8 +115,7 @@ def make_case(
     base = Plant(design, tuple(inserted))
     triples = zip(recordings, bad, places(recordings), strict=True)
     steps = coarse(recordings, step) if sharp else None
-    half = 0.0 if steps is None else steps.half
-    trials = tuple(replace(_trial(base, r, b, held, half), place=place) for r, b, place in triples)
+    trials = tuple(replace(_trial(base, r, b, held, steps), place=place) for r, b, place in triples)
     sigma_p = None if noise.pressure is None else max(noise.pressure.sigma, _LEAST_NOISE * span)
     sigma_y = max(noise.position.sigma, step / np.sqrt(12.0), _LEAST_NOISE * design.travel)
     return Case(tuple(recordings), base, scales, noise, float(sigma_y), sigma_p, trials, coarse=steps)
@@ -134,9 +133,11 @@ def widened(case: Case, margin: Margin) -> tuple[Case, float]:
     return replace(case, sigma_y=sigma_y, sigma_p=sigma_p, coarse=steps), max(shares) ** 2
 
 
-def _trial(base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool, half: float) -> Trial:
+def _trial(
+    base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool, steps: Coarse | None
+) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    begun = beginning(base, recording, make_grid(recording.time_s, step_s), half)
+    begun = beginning(base, recording, make_grid(recording.time_s, step_s), steps)
     return make_trial(recording, step_s, bad, begun, freshness(recording) if held else None)
 
 

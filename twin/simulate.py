@@ -62,8 +62,8 @@ def simulate_recording(
     """Pressure and reading at the rows of `recording`, each of shape (n,), in the recording's units.
 
     The start pressure is the first pressure reading, or else the first command, unless the first seconds tell another;
-    the stem starts at the first reading.
-    Through a gap the command of the row after it is taken to hold. Raises: `BadInput` for an effect that is unknown.
+    the stem starts at the first reading. Through a gap the command of the row after it is taken to hold. Raises:
+    `BadInput` for an effect that is unknown.
     """
     plant = design if isinstance(design, Plant) else plant_of(design)
     if recording.n < 2:
@@ -118,13 +118,14 @@ def is_measured(recording: Recording) -> bool:
     return recording.pressure is not None and bool(np.isfinite(recording.pressure).any())
 
 
-def moving_to(plant: Plant, recording: Recording, grid: TimeGrid) -> float | None:
+def moving_to(plant: Plant, recording: Recording, grid: TimeGrid, start: Start | None = None) -> float | None:
     """The reading towards which the valve was moving before the first row, None where it stood still.
 
     As a reading it holds for any gain and zero of the sensor that a hypothesis may have. It is not believed where a
-    valve at rest, with another lag or rate limit, moves off as well: the design's may be wrong.
+    valve at rest, with another lag or rate limit, moves off as well: the design's may be wrong. `start`: as `start_of`
+    says, if that is known.
     """
-    start = start_of(plant, recording, grid)
+    start = start or start_of(plant, recording, grid)
     if start.play == start.position or _rests(plant, recording, grid, start):
         return None
     return reading_at(plant.coefficients(recording.duration_s), start.play)

@@ -14,6 +14,7 @@ from twin.begun import Begun
 from twin.case import make_case
 from twin.catalog import effect
 from twin.fit.trial import SETTLE_S, make_trial
+from twin.noise.coarse import Coarse
 from twin.plant import Inserted, Plant
 from twin.simulate import Start, simulate_recording
 from twin.timegrid import make_grid
@@ -116,7 +117,7 @@ def test_what_a_coarse_reading_leaves_open_counts_for_nothing() -> None:
     record = recorded(Plant(DESIGN), 330, pressure=True)
     step = 0.05 * DESIGN.travel
     coarse = replace(record, position=step * np.round(record.position / step))
-    found = beginning(Plant(DESIGN), coarse, make_grid(coarse.time_s, 0.02), 0.5 * step)
+    found = beginning(Plant(DESIGN), coarse, make_grid(coarse.time_s, 0.02), Coarse(step, NOISE))
     assert 5.0 < found.unsure_s < 30.0
     use = make_trial(coarse, 0.02, begun=found).use_y
     _, model = simulate_recording(DESIGN, coarse)
@@ -128,7 +129,7 @@ def test_it_is_said_how_many_rows_that_costs() -> None:
     moving, still = (recorded(Plant(DESIGN), first, pressure=True) for first in (300, 290))
     trials = [make_trial(record, 0.02, begun=begun(record)) for record in (moving, still)]
     (note,) = start_notes(trials)
-    assert note.what.startswith("1 of 2 recordings begin under way")
+    assert note.what.startswith("1 of 2 recordings begin in a state")
     assert note.rows == np.count_nonzero(moving.time_s - moving.time_s[0] < trials[0].begun.unsure_s)
     assert start_notes(trials[1:]) == []
 
