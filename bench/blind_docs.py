@@ -24,6 +24,7 @@ from app.blind.table import curve_rows, fault_rows, number, rows
 from bench.blind_pages import CURVE, published
 from bench.blind_readme import readme
 from bench.blind_summary import summary, table
+from bench.exam_claims import read
 
 HOUSE = Path(__file__).resolve().parents[1]
 BEGIN, END = "<!-- generated: python bench/blind_docs.py -->", "<!-- end of the generated part -->"
@@ -62,7 +63,8 @@ def renewed(house: Path = HOUSE) -> dict[Path, str]:
     """docs/blind.md and the README as the pages say that they should be."""
     checks = published(house / "docs" / "blind")
     strangers = (house / "docs" / "strangers.md").read_text(encoding="utf-8")
-    parts = {house / "docs" / "blind.md": summary(checks), house / "README.md": readme(checks, strangers)}
+    claims = read(house / "docs" / "strangers.json")
+    parts = {house / "docs" / "blind.md": summary(checks), house / "README.md": readme(checks, strangers, claims)}
     return {path: between(path.read_text(encoding="utf-8"), part) for path, part in parts.items()}
 
 

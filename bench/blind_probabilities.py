@@ -28,7 +28,11 @@ def claims_of(pieces: Sequence[Worth]) -> list[Claim]:
 
 def calibration_error(pieces: Sequence[Worth]) -> Figure | None:
     """Of the sum, and what chance alone makes of probabilities that are all true; None without a cause named."""
-    claims = claims_of(pieces)
+    return error_of(claims_of(pieces))
+
+
+def error_of(claims: Sequence[Claim]) -> Figure | None:
+    """The same of claims as they were made."""
     if not claims:
         return None
     found, chance = error(claims), honest(claims)["mean"]

@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from bench.blind_pages import Check, Figure, figure, tables
-from bench.blind_probabilities import calibration_error, pooled
+from bench.blind_pages import Check, Figure, count, figure, tables
+from bench.blind_probabilities import calibration_error, error_of, pooled
 from bench.blind_summary import MEASURES, POOL, Measure, shown, table, together
+from bench.exam_claims import Claims, claims_of
 
+#: Sets of strangers' cases that are added up: the newest ones, which have 50 cases each.
+SETS = 8
 GOALS = tuple(measure for measure in MEASURES if measure.goal)
 KIN = {"reference": "`reference` (first principles)", "thesis": "`thesis` (kin to the design model)"}
 
@@ -27,12 +30,32 @@ def newest_plant(strangers: str) -> Column:
 
     Raises: `ValueError` when there is none.
     """
+    cells = _sets(strangers)[0]
+    found = {m.name: shown(m, figure(cells[m.column])) for m in GOALS}
+    link = cells["plant"].replace("](", "](docs/")
+    return Column(f"{link} independent plant, seed {cells['seed']}: {cells['cases']} cases", "the plant", found)
+
+
+def newest_sets(strangers: str, claims: Claims) -> Column:
+    """The first rows of that table added up, where counts can be; calibration of those sets whose claims are kept."""
+    rows = _sets(strangers)[:SETS]
+    found: dict[str, Figure | None] = {}
+    for measure in GOALS:
+        counts = [one for cells in rows if (one := shown(measure, figure(cells[measure.column]))) and one.of]
+        hits, of = sum(one.hits for one in counts), sum(one.of for one in counts)
+        found[measure.name] = count(hits, of) if of else None
+    found["calibration error"] = error_of(claims_of(claims, [cells["seed"] for cells in rows]))
+    name = f"the newest {len(rows)} sets"
+    cases = sum(int(cells["cases"]) for cells in rows if cells["cases"].isdigit())
+    head = f"[newest {len(rows)} sets](docs/strangers.md) of independent plants together: {cases} cases"
+    return Column(head, name, found)
+
+
+def _sets(strangers: str) -> list[dict[str, str]]:
+    """The rows of the table of plants by the heads. Raises: `ValueError` when there are none."""
     for heads, *rows in tables(strangers):
         if heads[0] == "plant" and rows:
-            cells = dict(zip(heads, rows[0], strict=True))
-            found = {m.name: shown(m, figure(cells[m.column])) for m in GOALS}
-            link = cells["plant"].replace("](", "](docs/")
-            return Column(f"{link} independent plant, seed {cells['seed']}: {cells['cases']} cases", "the plant", found)
+            return [dict(zip(heads, row, strict=True)) for row in rows]
     raise ValueError("docs/strangers.md has no table of plants")
 
 
@@ -53,9 +76,10 @@ def newest_checks(checks: Sequence[Check]) -> Column:
     return Column(head, f"the newest {len(checks)} checks", found)
 
 
-def readme(checks: Sequence[Check], strangers: str) -> str:
+def readme(checks: Sequence[Check], strangers: str, claims: Claims) -> str:
     """The table; below it what is missed, and how the families differ."""
-    columns = [newest_check(checks[0]), newest_checks(checks[:POOL]), newest_plant(strangers)]
+    columns = [newest_check(checks[0]), newest_checks(checks[:POOL])]
+    columns += [newest_plant(strangers), newest_sets(strangers, claims)]
     rows = ([m.name, m.goal, *(_cell(m, column.figures[m.name]) for column in columns)] for m in GOALS)
     heads = ["", "target", *(column.head for column in columns)]
     return "\n".join([*table(heads, rows), *map(_missed, columns), "", *_families(checks[0])])

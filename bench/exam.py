@@ -5,6 +5,7 @@ each case, by themselves or all under `cases`, its class (healthy, number, singl
 `unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same
 machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
 ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
+With `--claims docs/strangers.json` what was said is kept there, too, under the digits in FOLDER's name.
 """
 
 from __future__ import annotations
@@ -23,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.called import call
-from bench.exam_score import Answer, label_of, text
+from bench.exam_claims import keep
+from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
 from twin.model_units import in_units_of
@@ -107,6 +109,7 @@ def main() -> None:
     parser.add_argument("folder", type=Path)
     parser.add_argument("--out", type=Path, required=True)
     parser.add_argument("--processes", type=int, default=1)
+    parser.add_argument("--claims", type=Path)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     cases = cases_of(options.folder)
@@ -118,9 +121,12 @@ def main() -> None:
     sealed = sealed.get("cases", sealed)
     said = {case: json.loads((options.out / f"{case}.json").read_text(encoding="utf-8")) for case in cases}
     try:
-        print(text([Answer(case, label_of(case, sealed.get(case)), said[case], travel_in) for case in cases]))
+        answers = [Answer(case, label_of(case, sealed.get(case)), said[case], travel_in) for case in cases]
     except BadInput as error:
         sys.exit(str(error))
+    print(text(answers))
+    if options.claims:
+        keep(options.claims, "".join(filter(str.isdigit, options.folder.resolve().name)), claims(answers))
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from app.blind.calibration import error, honest
+from app.blind.calibration import Claim, error, honest
 from app.blind.mark import Mark, mark
 from app.interval import share
 from hal.errors import BadInput
@@ -116,12 +116,12 @@ def _measures(answers: Sequence[Answer]) -> dict[str, list[bool]]:
 def _figures(answers: Sequence[Answer]) -> Iterator[str]:
     for name, marks in _measures(answers).items():
         yield f"  {name:26}{sum(marks):4} of {len(marks):<4}{share(marks) if marks else '-'}"
-    claims, closures = _claims(answers), _closures(answers)
+    named, closures = claims(answers), _closures(answers)
     yield f"  names in a set, mean      {_set(answers):.2f}"
-    if claims:
-        chance = honest(claims)["mean"]
-        yield f"  calibration error         {error(claims):.3f} ({len(claims)} causes; {chance:.3f} by chance alone)"
-    sure = [right for p, right in claims if p >= 0.96]
+    if named:
+        chance = honest(named)["mean"]
+        yield f"  calibration error         {error(named):.3f} ({len(named)} causes; {chance:.3f} by chance alone)"
+    sure = [right for p, right in named if p >= 0.96]
     yield f"  true of those said with 0.96 or more: {sum(sure)} of {len(sure)}"
     if closures:
         middle, worst = np.median(closures), min(closures)
@@ -130,8 +130,9 @@ def _figures(answers: Sequence[Answer]) -> Iterator[str]:
     yield f"  seconds: median {np.median(seconds):.0f}, at most {max(seconds):.0f}"
 
 
-def _claims(answers: Sequence[Answer]) -> list[tuple[float, bool]]:
-    return [claim for a in answers for claim in a.mark.claims]
+def claims(answers: Sequence[Answer]) -> list[Claim]:
+    """What was said with which probability, and whether it was true; nothing of what ended in an error."""
+    return [claim for a in answers if "error" not in a.said for claim in a.mark.claims]
 
 
 def _closures(answers: Sequence[Answer]) -> list[float]:
@@ -150,9 +151,9 @@ def _row(answers: Sequence[Answer]) -> str:
     count: Callable[[str], str] = lambda name: f"{sum(measures[name])} of {len(measures[name])}"  # noqa: E731
     counts = [str(len(answers)), count("all right"), f"{sum(not a.said['causes'] for a in healthy)} of {len(healthy)}"]
     counts += [count(name) for name in ("first cause", "stage", "both of two", "outsider: right")]
-    claims, closures = _claims(answers), _closures(answers)
+    named, closures = claims(answers), _closures(answers)
     rest = [f"{_set(answers):.2f}"]
-    rest += [f"{error(claims):.3f}" if claims else "-", f"{np.median(closures):.3f}" if closures else "-"]
+    rest += [f"{error(named):.3f}" if named else "-", f"{np.median(closures):.3f}" if closures else "-"]
     return "| " + " | ".join(counts + rest) + " |"
 
 

@@ -25,7 +25,7 @@ CHECKS = published(HOUSE / "docs" / "blind")
 def house(tmp_path) -> Path:
     """The documents of this repository, to be spoiled."""
     shutil.copytree(HOUSE / "docs" / "blind", tmp_path / "docs" / "blind")
-    for name in ("README.md", "docs/blind.md", "docs/strangers.md"):
+    for name in ("README.md", "docs/blind.md", "docs/strangers.md", "docs/strangers.json"):
         shutil.copy(HOUSE / name, tmp_path / name)
     return tmp_path
 

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 from bench import exam
+from bench.exam_claims import read
 from bench.exam_score import Answer, label_of, text
 from control.design import DesignModel, save_design
 from hal.errors import BadInput
@@ -112,7 +113,7 @@ def write(path: Path, plant: Plant, seed: int, noisy: bool) -> np.ndarray:
 
 @pytest.mark.thorough
 def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) -> None:
-    folder, out = tmp_path / "sealed", tmp_path / "answers"
+    folder, out, kept = tmp_path / "sealed_77", tmp_path / "answers", tmp_path / "claims.json"
     wrong = Inserted("lvdt_calibration", effect("lvdt_calibration").form("gain"), (0.05,))
     for case, plant in {"case01": Plant(DesignModel()), "case02": Plant(DesignModel(), (wrong,))}.items():
         write(folder / case / "run1.csv", plant, 1, noisy=True)
@@ -120,7 +121,9 @@ def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) ->
         np.savez(folder / "unseen" / f"{case}.npz", x_analog=reading_in)
     save_design(DesignModel(), folder / "design.toml")
     sealed = {"case01": {"cls": "healthy", "truth": []}, "case02": {"cls": "single", "truth": ["lvdt_calibration"]}}
-    monkeypatch.setattr(sys, "argv", ["exam", str(folder), "--out", str(out), "--processes", "2"])
+    monkeypatch.setattr(
+        sys, "argv", ["exam", str(folder), "--out", str(out), "--processes", "2", "--claims", str(kept)]
+    )
     with pytest.raises(FileNotFoundError):  # no labels yet: the answers are there all the same
         exam.main()
     assert sorted(path.name for path in out.glob("*.json")) == ["case01.json", "case02.json"]
@@ -131,7 +134,9 @@ def test_a_folder_is_answered_and_scored(tmp_path: Path, monkeypatch, capsys) ->
     with pytest.raises(SystemExit, match="case02 has no label"):
         exam.main()
     (folder / "SEALED.json").write_text(json.dumps({"seed": 1, "cases": sealed}), encoding="utf-8")
+    assert not kept.exists()  # nothing is kept of a folder that cannot be scored
     exam.main()
+    assert [true for _, true, _ in read(kept)["77"]] == [1]
     said = capsys.readouterr().out
     assert "| 2 | 2 of 2 | 1 of 1 | 1 of 1 | 1 of 1 | 0 of 0 | 0 of 0 |" in said
     assert "closure on an unseen record: median 0.99" in said or "median 1.0" in said
