@@ -6,8 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from app.interval import bootstrap, wilson
+from logs.recording import FloatArray
 
 Claim = tuple[float, bool]  # probability said, and whether the cause was true
 
@@ -46,7 +48,7 @@ def honest(claims: Sequence[Claim], seed: int = 0) -> dict[str, Any]:
     chance = np.random.default_rng(seed)
     said = np.array([p for p, _ in claims])
     drawn = chance.random((_DRAWS, said.size)) < said
-    errors = np.array([error(list(zip(said, map(bool, one), strict=True))) for one in drawn])
+    errors = np.abs((said - drawn) @ _membership(said)).sum(axis=1) / said.size
     low, high = np.percentile(errors, [2.5, 97.5])
     above = float(np.mean(errors >= error(claims) - _SAME))
     return {"mean": float(errors.mean()), "range95": [float(low), float(high)], "above": above}
@@ -59,13 +61,24 @@ def error(claims: Sequence[Claim]) -> float:
     """
     if not claims:
         return float("nan")
-    return float(sum(b["claims"] * abs(b["said"] - b["right"]) for b in curve(claims))) / len(claims)
+    said, right = np.array(claims, dtype=np.float64).T
+    return float(np.abs((said - right) @ _membership(said)).sum() / said.size)
+
+
+def _membership(said: FloatArray) -> FloatArray:
+    """1 where a claim is in a bin, shape (claims, bins): what is summed over it is compared bin by bin."""
+    return np.eye(len(EDGES) - 1)[_bins(said)]
+
+
+def _bins(said: FloatArray) -> npt.NDArray[np.int64]:
+    """The bin of each probability; 1.0 is in the last."""
+    return np.clip(np.searchsorted(EDGES, said, side="right") - 1, 0, len(EDGES) - 2)
 
 
 def curve(claims: Sequence[Claim]) -> list[dict[str, Any]]:
     """Per bin that holds claims: the mean probability said, the share that was right, and its interval."""
     bins = []
-    which = np.clip(np.searchsorted(EDGES, [p for p, _ in claims], side="right") - 1, 0, len(EDGES) - 2)
+    which = _bins(np.array([p for p, _ in claims], dtype=np.float64))
     for number in range(len(EDGES) - 1):
         inside = [claim for claim, k in zip(claims, which, strict=True) if k == number]
         if inside:
