@@ -89,7 +89,7 @@ def _in(p: float, supply: float) -> float:
 
 
 @pytest.mark.parametrize("values", [(0.05, 0.08, 1.5), (0.3, 0.2, 0.6)])
-@pytest.mark.parametrize("supply", [9.5, 12.0])
+@pytest.mark.parametrize("supply", [pytest.param(9.5, marks=pytest.mark.thorough), 12.0])
 def test_a_weak_supply_fills_more_and_more_slowly(values: tuple[float, float, float], supply: float) -> None:
     booster = plant(*values)
     weak = Inserted("supply_saturation", effect("supply_saturation").form("cut_off"), (supply,))
@@ -213,7 +213,7 @@ def test_the_slopes_are_those_with_the_stem_half_way(air: float) -> None:
     assert slope == pytest.approx(2.0, rel=0.01)
 
 
-@pytest.mark.parametrize("dirt", [4.0, -4.0])
+@pytest.mark.parametrize("dirt", [4.0, pytest.param(-4.0, marks=pytest.mark.thorough)])
 @pytest.mark.parametrize("clean", [0.0, 0.1])
 def test_a_dirty_port_shows_the_chamber_and_the_supply(dirt: float, clean: float) -> None:
     """That a narrow supply port fills as ISO 6358 says, up to the supply, and that more or less air is swept.

@@ -17,13 +17,15 @@ from twin.slots import V_PRESLIDING, V_TAU_AFTER_S
 from twin.timegrid import make_grid
 
 
-@pytest.mark.parametrize("reach", [0.005, 0.06])
+@pytest.mark.parametrize("reach", [0.005, pytest.param(0.06, marks=pytest.mark.thorough)])
 def test_like_springs_stepped_in_small_steps(reach: float) -> None:
     """Other formulation, same valve; started as after opening."""
     assert np.max(np.abs(stem(plant(reach)) - stepped(reach))) < 0.001 * 0.5625
 
 
-@pytest.mark.parametrize("share", [0.1, 0.6, 1.0])
+@pytest.mark.parametrize(
+    "share", [pytest.param(0.1, marks=pytest.mark.thorough), 0.6, pytest.param(1.0, marks=pytest.mark.thorough)]
+)
 def test_behind_a_play_it_is_like_springs_stepped_behind_one(share: float) -> None:
     """What of the deadband is no friction on the stem is a play before it."""
     form = effect("friction_in_motion").form("partial_elastic")

@@ -50,7 +50,7 @@ def integrated(inertia_s: float) -> FloatArray:
     return np.asarray(found.y[0])
 
 
-@pytest.mark.parametrize("inertia_s", [0.2, 2.0])
+@pytest.mark.parametrize("inertia_s", [0.2, pytest.param(2.0, marks=pytest.mark.thorough)])
 def test_like_an_integration_with_controlled_steps(inertia_s: float) -> None:
     assert np.max(np.abs(stem(inertia_s) - integrated(inertia_s))) < 0.0004 * 0.5625
 

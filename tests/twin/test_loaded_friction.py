@@ -46,7 +46,14 @@ def _balance(p: float, sign: float, load: float) -> float:
     return w
 
 
-@pytest.mark.parametrize(("load", "below", "above"), [(0.0, 0.0, 0.0), (LOAD, 0.0, 0.0), (LOAD, BELOW, ABOVE)])
+@pytest.mark.parametrize(
+    ("load", "below", "above"),
+    [
+        pytest.param(0.0, 0.0, 0.0, marks=pytest.mark.thorough),
+        pytest.param(LOAD, 0.0, 0.0, marks=pytest.mark.thorough),
+        (LOAD, BELOW, ABOVE),
+    ],
+)
 def test_same_as_small_steps(load: float, below: float, above: float) -> None:
     form = effect("friction_in_motion").form("partial_loaded")
     plant = Plant(D, (Inserted("friction_in_motion", form, (SHARE, load, below, above)),))
