@@ -47,6 +47,12 @@ def page(shown: Series) -> str:
     return render(diagnosis(shown), shown)
 
 
+@pytest.fixture
+def words_only(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pages without figures, as with few rows, for tests of what a page says: drawing takes seconds."""
+    monkeypatch.setattr("twin.report.page._figures", lambda diagnosis, series: {})
+
+
 def test_page_is_whole_and_refers_to_nothing_outside(page: str) -> None:
     balance = Balance()
     balance.feed(page)
@@ -113,7 +119,7 @@ def test_limits_are_right_for_effects_that_are_worse_when_smaller_and_the_record
     assert "every number of this page" not in page
 
 
-def test_a_page_of_an_unfinished_diagnosis_is_not_headed_by_a_verdict(shown: Series) -> None:
+def test_a_page_of_an_unfinished_diagnosis_is_not_headed_by_a_verdict(shown: Series, words_only: None) -> None:
     unfinished = replace(
         diagnosis(shown), verdict="unexplained", incomplete="interrupted at position: one cause (40 %)"
     )
@@ -178,7 +184,7 @@ def test_all_columns_share_one_scale_that_is_printed(page: str) -> None:
     assert len(set(printed)) == 1
 
 
-def test_a_verdict_without_a_gap_gives_no_stage_a_share_of_it(shown: Series) -> None:
+def test_a_verdict_without_a_gap_gives_no_stage_a_share_of_it(shown: Series, words_only: None) -> None:
     known = diagnosis(shown)
     page = render(replace(known, verdict="no_gap", causes=(), where=replace(known.where, attributed=None)), shown)
     boxes = re.findall(r'class="box">[^<]*<small>([^<]*)</small>', page)
@@ -193,7 +199,7 @@ def test_rejected_candidates_are_shown_as_such_and_none_is_left_out(shown: Serie
     assert {row["probability"] for row in rows} == {"rejected"}
 
 
-def test_nothing_is_said_to_be_impossible_and_methods_are_those_in_use(shown: Series) -> None:
+def test_nothing_is_said_to_be_impossible_and_methods_are_those_in_use(shown: Series, words_only: None) -> None:
     unlikely = replace(diagnosis(shown), ranking=(Ranked("creep", 0.0, 0.3),), causes=())
     assert [row["probability"] for row in ranking_rows(unlikely)] == ["< 1 %"]
     page = render(unlikely, shown)
