@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,6 +57,12 @@ def count(hits: int, of: int) -> Figure:
     interval = f"{100.0 * low:.0f} to {100.0 * high:.0f} %" if of else ""
     text = f"{hits} of {of}, {100.0 * hits / of:.0f} %" if of else "-"
     return Figure(text, hits / of if of else float("nan"), hits, of, interval)
+
+
+def added(figures: Iterable[Figure | None]) -> Figure:
+    """Counts added up; what is no count, or is not there, adds nothing."""
+    counts = [one for one in figures if one]
+    return count(sum(one.hits for one in counts), sum(one.of for one in counts))
 
 
 def figure(cell: str, interval: str = "") -> Figure | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from bench.blind_pages import Check, Figure, count, figure, tables
+from bench.blind_pages import Check, Figure, added, figure, tables
 from bench.blind_probabilities import calibration_error, error_of, pooled
 from bench.blind_summary import MEASURES, POOL, Measure, shown, table, together
 from bench.exam_claims import Claims, claims_of
@@ -39,11 +39,8 @@ def newest_plant(strangers: str) -> Column:
 def newest_sets(strangers: str, claims: Claims) -> Column:
     """The first rows of that table added up, where counts can be; calibration of those sets whose claims are kept."""
     rows = _sets(strangers)[:SETS]
-    found: dict[str, Figure | None] = {}
-    for measure in GOALS:
-        counts = [one for cells in rows if (one := shown(measure, figure(cells[measure.column]))) and one.of]
-        hits, of = sum(one.hits for one in counts), sum(one.of for one in counts)
-        found[measure.name] = count(hits, of) if of else None
+    sums = {m.name: added(shown(m, figure(cells[m.column])) for cells in rows) for m in GOALS}
+    found = {name: one if one.of else None for name, one in sums.items()}
     found["calibration error"] = error_of(claims_of(claims, [cells["seed"] for cells in rows]))
     name = f"the newest {len(rows)} sets"
     cases = sum(int(cells["cases"]) for cells in rows if cells["cases"].isdigit())

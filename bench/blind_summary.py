@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from bench.blind_pages import CURVE, Check, Figure, count
+from bench.blind_pages import CURVE, Check, Figure, added, count
 from bench.blind_probabilities import pooled, words
 
 POOL = 5  # checks that are added up: the newest ones, which have 80 valves each
@@ -129,8 +129,7 @@ def _pooled_row(measure: Measure, checks: Sequence[Check], groups: Sequence[str]
 
 def together(measure: Measure, checks: Sequence[Check], group: str = "all") -> Figure:
     """The counts of several checks added up, as the summaries have them."""
-    found = _of(measure, checks, group)
-    return count(sum(one.hits for one in found), sum(one.of for one in found))
+    return added(_of(measure, checks, group))
 
 
 def _of(measure: Measure, checks: Sequence[Check], group: str) -> list[Figure]:

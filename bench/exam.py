@@ -5,7 +5,7 @@ each case, by themselves or all under `cases`, its class (healthy, number, singl
 `unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same
 machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
 ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
-With `--claims docs/strangers.json` what was said is kept there, too, under the digits in FOLDER's name.
+With `--claims docs/strangers.json` what was said is kept there, too, under the digits that end FOLDER's name.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bench.called import call
-from bench.exam_claims import keep
+from bench.exam_claims import keep, seed_of
 from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
@@ -111,6 +111,10 @@ def main() -> None:
     parser.add_argument("--processes", type=int, default=1)
     parser.add_argument("--claims", type=Path)
     options = parser.parse_args()
+    try:
+        seed = seed_of(options.folder) if options.claims else ""
+    except BadInput as error:
+        sys.exit(str(error))  # before an hour of answers, not after
     options.out.mkdir(parents=True, exist_ok=True)
     cases = cases_of(options.folder)
     with ThreadPoolExecutor(options.processes) as pool:
@@ -126,7 +130,7 @@ def main() -> None:
         sys.exit(str(error))
     print(text(answers))
     if options.claims:
-        keep(options.claims, "".join(filter(str.isdigit, options.folder.resolve().name)), claims(answers))
+        keep(options.claims, seed, claims(answers))
 
 
 if __name__ == "__main__":

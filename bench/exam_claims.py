@@ -7,15 +7,25 @@ many of these were true.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from app.blind.calibration import Claim
+from hal.errors import BadInput
 
 #: By seed: (probability, true, named) for each probability, the highest first.
 Claims = Mapping[str, Sequence[tuple[float, int, int]]]
 
 _DIGITS = 4
+
+
+def seed_of(folder: Path) -> str:
+    """The digits at the end of a folder's name, under which its claims are kept. Raises: `BadInput` without any."""
+    found = re.search(r"(\d+)$", folder.resolve().name)
+    if found is None:
+        raise BadInput(f"{folder}: --claims keeps them under the seed that ends the folder's name; call it set_SEED")
+    return found[1]
 
 
 def counted(claims: Sequence[Claim]) -> list[tuple[float, int, int]]:

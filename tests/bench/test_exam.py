@@ -13,7 +13,7 @@ import pytest
 
 from bench import exam
 from bench.exam_claims import read
-from bench.exam_score import Answer, label_of, text
+from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, save_design
 from hal.errors import BadInput
 from logs.recording import Recording
@@ -65,6 +65,11 @@ def test_what_the_design_misses_by_less_than_the_floor_has_no_closure() -> None:
 
 def test_without_a_single_answer_the_errors_are_told() -> None:
     assert "row 3: no number" in text([answer("single", ["creep"], "", error="case.csv: row 3: no number")])
+
+
+def test_what_ended_in_an_error_claims_nothing() -> None:
+    broken = Answer("case01", label_of("case01", {"cls": "single", "truth": ["creep"]}), {"error": "no number"}, 0.5)
+    assert claims([broken, ANSWERS[2]]) == [(0.97, True)]
 
 
 def test_a_set_that_holds_the_truth_is_counted_beside() -> None:

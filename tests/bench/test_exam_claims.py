@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from bench import exam
 from bench.blind_docs import HOUSE
 from bench.blind_pages import tables
 from bench.blind_readme import SETS, newest_sets
 from bench.blind_summary import MEASURES
-from bench.exam_claims import claims_of, counted, keep, read
+from bench.exam_claims import claims_of, counted, keep, read, seed_of
 
 HEADS = f"| plant | seed | cases | {' | '.join(measure.column for measure in MEASURES[1:])} |"
 ROW = "| [x](strangers/x-plant.md) | {} | 40 | 7 of 8 | 23 of 28 | - | 3 of 7 | 3 of 4 | 1.12 | 0.01 | 0.996 |"
@@ -22,6 +24,15 @@ ROW = "| [x](strangers/x-plant.md) | {} | 40 | 7 of 8 | 23 of 28 | - | 3 of 7 | 
 @given(st.lists(st.tuples(st.sampled_from((0.97, 0.9, 0.75, 0.6)), st.booleans())))
 def test_counting_loses_no_claim(claims: list[tuple[float, bool]]) -> None:
     assert sorted(claims_of({"7": counted(claims)}, ["7"])) == sorted(claims)
+
+
+def test_a_set_is_known_by_the_digits_that_end_its_folders_name(tmp_path: Path, monkeypatch) -> None:
+    assert seed_of(tmp_path / "second_set2_884417") == "884417"
+    words = ["exam", str(tmp_path / "cases"), "--out", str(tmp_path / "out"), "--claims", str(tmp_path / "c.json")]
+    monkeypatch.setattr(sys, "argv", words)
+    with pytest.raises(SystemExit, match="call it set_SEED"):
+        exam.main()
+    assert not (tmp_path / "out").exists()
 
 
 def test_a_set_is_added_or_replaced(tmp_path: Path) -> None:

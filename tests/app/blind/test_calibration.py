@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from app.blind.calibration import calibration, curve, error, honest
 
@@ -28,6 +30,12 @@ def test_errors_in_both_directions_do_not_cancel() -> None:
 def test_every_probability_has_a_bin() -> None:
     claims = [(p, True) for p in (0.0, 0.3, 0.95, 1.0)]
     assert sum(point["claims"] for point in curve(claims)) == 4
+
+
+@given(st.lists(st.tuples(st.floats(0.0, 1.0), st.booleans()), min_size=1, max_size=60))
+def test_the_error_is_that_of_the_curve(claims: list[tuple[float, bool]]) -> None:
+    by_bins = sum(point["claims"] * abs(point["said"] - point["right"]) for point in curve(claims))
+    assert error(claims) == pytest.approx(by_bins / len(claims), abs=1e-12)
 
 
 def test_no_claims_is_no_figure() -> None:
