@@ -35,6 +35,7 @@ class TcpBus:
         self._number = 0
         self._data = b""
         self._answered = False  # somebody there has spoken Modbus TCP
+        self._missed = False  # an answer on this connection has not come yet: half of one may come at any time
         self._lost = False  # nobody knows where in the stream the next header is
 
     @property
@@ -42,7 +43,7 @@ class TcpBus:
         return self._stats
 
     def open(self) -> None:
-        self._data, self._answered, self._lost = b"", False, False
+        self._data, self._answered, self._missed, self._lost = b"", False, False, False
         self._transport.open()
 
     def close(self) -> None:
@@ -74,7 +75,7 @@ class TcpBus:
 
     def _silence(self, request: Request, frame: bytes) -> WireFault:
         """No answer in time. Half of one may be there: its rest may never come, and then it would be the next one's."""
-        self._lost = bool(self._data)
+        self._lost, self._missed = bool(self._data), True
         self._stats.timeouts += 1
         self._stats.damaged += self._lost
         said = f"only {len(self._data)} bytes of an answer" if self._data else "no answer"
@@ -91,7 +92,7 @@ class TcpBus:
         self._data = b""
         self._transport.close()
         self._transport.open()
-        self._lost = False
+        self._lost, self._missed = False, False
         self._stats.resyncs += 1
 
     def _message(self) -> tuple[int, int, bytes] | None:
@@ -105,7 +106,7 @@ class TcpBus:
         if protocol != 0 or not 3 <= length <= 254:
             self._lost = True
             got = self._data[:8].hex(" ")
-            if not self._answered:
+            if not (self._answered or self._missed):
                 raise PortFault(f"port {self._name} does not speak Modbus TCP (got {got})")
             self._stats.damaged += 1
             raise WireFault(f"port {self._name} is out of step (got {got}); it is connected anew", received=self._data)

@@ -73,6 +73,20 @@ def test_a_late_answer_is_recognised_by_its_number() -> None:
         assert bus.stats.late_bytes > 0
 
 
+def test_half_an_answer_that_comes_late_is_no_proof_of_another_protocol() -> None:
+    held = []
+
+    def reply(index: int, data: bytes) -> bytes:
+        held.append(answer(data))
+        return b"" if index == 0 else held[0][:1] + held[1]
+
+    with bus_to(reply, timeout_s=0.05) as bus:
+        with pytest.raises(WireFault, match="no answer within"):
+            bus.transact(read_registers(1, 3, 100, 1))
+        with pytest.raises(WireFault, match="out of step"):
+            bus.transact(read_registers(1, 3, 200, 1))
+
+
 def test_an_answer_in_pieces_and_two_in_one() -> None:
     with bus_to(lambda i, data: frame(999, 1, b"\x03\x02\x00\x00") + answer(data)) as bus:
         assert bus.transact(read_registers(1, 3, 8, 2)).words == (8, 9)
