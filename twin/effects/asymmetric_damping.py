@@ -52,6 +52,15 @@ def _one_way(slot: int) -> Callable[[Coefficients, Sequence[float]], None]:
     return write
 
 
+def _throttled_one_way(lag: int, rate: int) -> Callable[[Coefficients, Sequence[float]], None]:
+    def write(c: Coefficients, values: Sequence[float]) -> None:
+        # A needle valve beside a check valve: one way fills slowly and is bounded, the other is as designed.
+        c.valve[lag] *= 1.0 + values[0]
+        c.valve[rate] *= 1.0 - values[1]
+
+    return write
+
+
 def _lags_and_rates_apart(c: Coefficients, values: Sequence[float]) -> None:
     # What bounds the speed (a vent that chokes, a booster's capacity) need not be what makes the lag.
     _two_lags(c, values)
@@ -113,6 +122,11 @@ def _longer(way: str) -> Parameter:
     return replace(_parameter("longer", doc), upper=4.0, starts=(-0.4, -0.04, 0.04, 0.4, 1.2), scale=0.4)
 
 
+def _longer_and_slower(way: str) -> tuple[Parameter, Parameter]:
+    doc = f"by how much lower the highest speed {way} is, as a share of it; the other way it is the design's"
+    return _longer(way), _parameter("slower", doc)
+
+
 def _drag(way: str) -> Parameter:
     doc = f"what drag adds to the time constant {way}, as a share of it, as long as no stop limits the pull"
     return replace(_parameter(way, doc), starts=(-0.3, -0.03, 0.03, 0.3), scale=0.3)
@@ -133,6 +147,7 @@ EFFECT = Effect(
     claim="The time constants closing and opening differ.",
     equations="dx/dt = (w - x) / (tau (1 + asymmetry)) closing, (w - x) / (tau (1 - asymmetry)) opening; "
     "closing_alone, opening_alone: tau (1 + longer) that way; "
+    "closing_throttled, opening_throttled: rate limit (1 - slower) that way, too; "
     "two_lags_and_rates: rate limit / (1 +- asymmetry), too; two_lags_and_rates_apart: (1 -+ of_the_speeds) of it; "
     "drag_each_way: dx/dt = (clip(w' - tau drag dx/dt) - x) / tau, clip: to the stops, drag its own each way; "
     "orifice_each_way: likewise drag = throttled |dx/dt| / rate limit; "
@@ -144,6 +159,8 @@ EFFECT = Effect(
         Form("two_lags", (_ASYMMETRY,), _two_lags),
         Form("closing_alone", (_longer("closing"),), _one_way(V_TAU_CLOSE_S)),
         Form("opening_alone", (_longer("opening"),), _one_way(V_TAU_OPEN_S)),
+        Form("closing_throttled", _longer_and_slower("closing"), _throttled_one_way(V_TAU_CLOSE_S, V_RATE_CLOSE)),
+        Form("opening_throttled", _longer_and_slower("opening"), _throttled_one_way(V_TAU_OPEN_S, V_RATE_OPEN)),
         Form("two_lags_and_rates", (_ASYMMETRY,), _two_lags_and_rates),
         Form("two_lags_and_rates_apart", (_ASYMMETRY, _SPEEDS), _lags_and_rates_apart),
         Form("drag_each_way", (_drag("closing"), _drag("opening")), _drag_each_way),
