@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -113,12 +113,18 @@ def _load_table(
         conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
         headers={role: column.header for role, column in columns.items()},
         unsaid=tuple(role for role, unit in stated.items() if not unit),
-        notes=table.notes,
+        notes=(*table.notes, *_said_instead(table, columns)),
         locate=table.locate,
     )
     foreign = tuple(role for role, unit in stated.items() if _foreign(signals, role, unit))
     meta = {"file": str(path), "foreign": foreign, WRITTEN: stated}
     return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta=meta)
+
+
+def _said_instead(table: Table, columns: Mapping[Role, Column]) -> Iterator[DataNote]:
+    for column in columns.values():
+        for word, (count, first) in table.states(column.header).items():
+            yield DataNote(f"{column.header}: '{word}' in place of a value", "taken as missing", count, first)
 
 
 def _foreign(signals: Signals, role: Role, unit: str) -> bool:

@@ -14,6 +14,7 @@ import numpy as np
 from hal.errors import BadInput
 from logs.calendar_text import FORMS, looks_like_time, parser_of
 from logs.dialect import MISSING, Dialect, clean, sniff, split
+from logs.historian import is_state
 from logs.recording import DataNote, FloatArray
 from logs.rows import check_quotes, line_of, why_not
 
@@ -51,6 +52,19 @@ class Table:
         except pa.ArrowException as error:
             raise BadInput(f"{self.where}: column '{header}' holds {array.type}; it must hold numbers") from error
 
+    def states(self, header: str) -> dict[str, tuple[int, int]]:
+        """What a historian says in place of values: of each word how often, and in which row first, from 1."""
+        import pyarrow as pa
+
+        array, found = self.column(header), dict[str, tuple[int, int]]()
+        if not (pa.types.is_string(array.type) or pa.types.is_large_string(array.type)):
+            return found
+        for row, cell in enumerate(array.to_pylist()):
+            if is_state(text := (cell or "").strip()):
+                count, first = found.get(text, (0, row + 1))
+                found[text] = (count + 1, first)
+        return found
+
     def is_calendar(self, header: str) -> bool:
         """Whether a column holds dates or times of day, which become seconds by themselves."""
         import pyarrow as pa
@@ -66,7 +80,7 @@ class Table:
         parse: Callable[[str], float] | None = None
         for row, cell in enumerate(array.to_pylist()):
             text = (cell or "").strip()
-            if text in MISSING:
+            if text in MISSING or is_state(text):
                 continue
             parse = parse or parser_of(text)
             try:
