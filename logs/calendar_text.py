@@ -6,16 +6,30 @@ import re
 from collections.abc import Callable
 from datetime import UTC, datetime
 
-_CLOCK = re.compile(r"(\d{1,3}):(\d{2}):(\d{2}(?:[.,]\d+)?)")
-_DATE = re.compile(r"\d{4}-\d{2}-\d{2}[ T]\S+")
-_DOTTED = re.compile(r"(\d{1,2})\.(\d{1,2})\.(\d{4}) +(\S+)")  # day first, as everywhere that dates have dots
-
-#: Month first: a date with a clock of twelve hours is American. Without AM or PM a slash does not say which it is.
-_SLASHED = re.compile(
-    r"(\d{1,2})/(\d{1,2})/(\d{4}),? +(\d{1,2}):(\d{2}(?::\d{2}(?:[.,]\d+)?)?) ?([AP])M", re.IGNORECASE
+_HOUR_MINUTE = r"(?P<hour>\d{1,2}):(?P<minute>\d{2})"
+_SECOND = r"(?P<second>\d{2}(?:[.,]\d+)?)"
+_NOON = r" ?(?P<noon>[AP])M"
+_CLOCK = re.compile(rf"(?P<hour>\d{{1,3}}):(?P<minute>\d{{2}}):{_SECOND}(?:{_NOON})?", re.IGNORECASE)
+_ISO = re.compile(r"(?:\d{4}-\d{2}-\d{2}[ T]|\d{8}T)\S+")
+_MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
+#: All but ISO: each in one order only, and none whose order its writing does not tell. What follows may be optional.
+_DATES = tuple(
+    re.compile(rf"{date},? +{_HOUR_MINUTE}(?::{_SECOND})?(?:{_NOON}){twelve_hours}(?P<zone>Z|[-+]\S+)?", re.IGNORECASE)
+    for date, twelve_hours in (
+        # Day first, as everywhere that dates have dots.
+        (r"(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4}|\d{2})", "?"),
+        (r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})", "?"),
+        # As historians write: 05-Mar-24.
+        (rf"(?P<day>\d{{1,2}})[- ](?P<month>{'|'.join(_MONTHS)})[- ](?P<year>\d{{4}}|\d{{2}})", "?"),
+        # Month first: a date with a clock of twelve hours is American. Without AM or PM a slash does not tell.
+        (r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4})", ""),
+    )
 )
 #: What is read, for an operator whose file has something else.
-FORMS = "2024-03-05 08:00:00.5, 05.03.2024 08:00:00, 03/05/2024 08:00:00 AM (month first), 08:00:00, or seconds"
+FORMS = (
+    "2024-03-05 08:00:00.5, 2024/03/05 08:00:00, 05.03.2024 08:00:00, 05-Mar-24 08:00:00, "
+    "03/05/2024 08:00:00 AM (month first), 08:00:00, or seconds"
+)
 
 
 def looks_like_time(text: str) -> bool:
@@ -27,7 +41,7 @@ def parser_of(text: str) -> Callable[[str], float]:
     """How a column with a first cell like `text` is read: times of day, dates (see `FORMS`) or numbers."""
     if _CLOCK.fullmatch(text):
         return clock_seconds
-    return date_seconds if any(form.fullmatch(text) for form in (_DATE, _DOTTED, _SLASHED)) else float
+    return date_seconds if any(form.fullmatch(text) for form in (_ISO, *_DATES)) else float
 
 
 def clock_seconds(text: str) -> float:
@@ -35,17 +49,24 @@ def clock_seconds(text: str) -> float:
     found = _CLOCK.fullmatch(text)
     if found is None:
         raise ValueError(text)
-    return 3600.0 * float(found[1]) + 60.0 * float(found[2]) + float(found[3].replace(",", "."))
+    return 3600.0 * _hour(found) + 60.0 * float(found["minute"]) + float(found["second"].replace(",", "."))
 
 
 def date_seconds(text: str) -> float:
     """Seconds since 2000, in UTC where the text names no zone. Raises: `ValueError` for what is no such date."""
-    dotted = _DOTTED.fullmatch(text)
-    if dotted is not None:
-        text = f"{dotted[3]}-{int(dotted[2]):02d}-{int(dotted[1]):02d}T{dotted[4]}"
-    slashed = _SLASHED.fullmatch(text)
-    if slashed is not None:
-        hour = int(slashed[4]) % 12 + (12 if slashed[6].upper() == "P" else 0)
-        text = f"{slashed[3]}-{int(slashed[1]):02d}-{int(slashed[2]):02d}T{hour:02d}:{slashed[5]}"
-    when = datetime.fromisoformat(text.replace(",", "."))
+    found = next(filter(None, (form.fullmatch(text) for form in _DATES)), None)
+    when = datetime.fromisoformat((_iso(found) if found else text).replace(",", "."))
     return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - 946_684_800.0
+
+
+def _iso(date: re.Match[str]) -> str:
+    name, year = date["month"].lower(), int(date["year"])
+    month = _MONTHS.index(name) + 1 if name in _MONTHS else int(name)
+    clock = f"{_hour(date):02d}:{date['minute']}:{date['second'] or '00'}{date['zone'] or ''}"
+    return f"{year if year > 99 else 2000 + year}-{month:02d}-{int(date['day']):02d}T{clock}"
+
+
+def _hour(clock: re.Match[str]) -> int:
+    """The hour of 24: 12 AM is midnight."""
+    hour = int(clock["hour"])
+    return hour if clock["noon"] is None else hour % 12 + 12 * (clock["noon"].upper() == "P")
