@@ -161,3 +161,16 @@ def test_held_out_errors_cover_all_rows(toy: Recording, monkeypatch: pytest.Monk
     assert error.shape == (toy.n,)
     assert np.isfinite(error[case.trials[0].use_y]).all()
     assert error == pytest.approx(predict_heldout(case, case.base, [], []), nan_ok=True)
+
+
+def test_what_a_coarse_reading_leaves_open_stays_open_in_a_look(
+    toy: Recording, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A stem at rest, read in steps of 5 %, may stand anywhere within a code, in a look as in the whole."""
+    step = 0.05 * DesignModel().travel
+    coarse = replace(toy, position=step * np.round(toy.position / step))
+    blurred, sharp = (make_case([coarse], DesignModel(), step=step, sharp=sharp) for sharp in (False, True))
+    assert look(blurred, monkeypatch, coarse_s=1e9).trials[0].begun.unsure_s == 0.0
+    begun = look(sharp, monkeypatch, coarse_s=1e9).trials[0].begun
+    assert begun.unsure_s == pytest.approx(sharp.trials[0].begun.unsure_s, abs=1.0)
+    assert begun.unsure_s > 5.0
