@@ -1,7 +1,7 @@
 """Examines the diagnosis with somebody's sealed folder: `python -m bench.exam FOLDER --out ANSWERS [--processes 2]`.
 
 The folder holds `design.toml` (or none), `caseNN/*.csv` (the recordings of one machine each) and `SEALED.json`: for
-each case, by themselves or all under `cases`, its class (healthy, number, single, pair, outsider) and its true causes.
+each case, by themselves or all under `cases`, `cls` (healthy, number, single, pair, outsider) and `truth`, its causes.
 `unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same
 machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
 ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
