@@ -122,7 +122,8 @@ def _load_table(
 
 
 def _said_instead(table: Table, columns: Mapping[Role, Column]) -> Iterator[DataNote]:
-    for column in columns.values():
+    """What a historian wrote instead of readings; a row without a time is said to be one elsewhere."""
+    for column in (column for role, column in columns.items() if role != "time"):
         for word, (count, first) in table.states(column.header).items():
             yield DataNote(f"{column.header}: '{word}' in place of a value", "taken as missing", count, first)
 
