@@ -30,17 +30,18 @@ def answer(request: bytes) -> bytes:
 
 
 @contextmanager
-def bus_to(reply: Callable[[int, bytes], bytes], timeout_s: float = 1.0) -> Iterator[TcpBus]:
+def bus_to(reply: Callable[[int, bytes], bytes], timeout_s: float = 1.0, connections: int = 1) -> Iterator[TcpBus]:
     with socket.create_server(("127.0.0.1", 0)) as server:
         port = parse_port(f"tcp://127.0.0.1:{server.getsockname()[1]}")
 
         def serve() -> None:
-            peer, _ = server.accept()
-            with peer:
-                index = 0
-                while data := peer.recv(260):
-                    peer.sendall(reply(index, data))
-                    index += 1
+            index = 0
+            for _ in range(connections):
+                peer, _ = server.accept()
+                with peer:
+                    while data := peer.recv(260):
+                        peer.sendall(reply(index, data))
+                        index += 1
 
         thread = threading.Thread(target=serve, daemon=True)
         thread.start()
@@ -112,3 +113,12 @@ def test_a_stream_that_is_not_modbus_tcp_is_refused() -> None:
         pytest.raises(PortFault, match="does not speak Modbus TCP"),
     ):
         bus.transact(read_registers(1, 3, 7, 1))
+
+
+def test_what_is_not_modbus_tcp_is_refused_on_the_connection_after_a_silent_one() -> None:
+    with bus_to(lambda i, _: b"HTTP/1.1 400" if i else b"", timeout_s=0.05, connections=2) as bus:
+        for words in ("no answer within", "out of step"):
+            with pytest.raises(WireFault, match=words):
+                bus.transact(read_registers(1, 3, 7, 1))
+        with pytest.raises(PortFault, match="does not speak Modbus TCP"):
+            bus.transact(read_registers(1, 3, 7, 1))
