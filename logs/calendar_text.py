@@ -12,10 +12,10 @@ _NOON = r" ?(?P<noon>[AP])M"
 _CLOCK = re.compile(rf"(?P<hour>\d{{1,3}}):(?P<minute>\d{{2}}):{_SECOND}(?:{_NOON})?", re.IGNORECASE)
 _ISO = re.compile(r"(?:\d{4}-\d{2}-\d{2}[ T]|\d{8}T)\S+")
 _MONTHS = ("jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec")
-#: All but ISO: each in one order only, and none whose order its writing does not tell. What follows may be optional.
+#: All but ISO: each in one order only, which its writing tells. `optional`: AM and PM may be missing ("?") or not ("").
 _DATES = tuple(
-    re.compile(rf"{date},? +{_HOUR_MINUTE}(?::{_SECOND})?(?:{_NOON}){twelve_hours}(?P<zone>Z|[-+]\S+)?", re.IGNORECASE)
-    for date, twelve_hours in (
+    re.compile(rf"{date},? +{_HOUR_MINUTE}(?::{_SECOND})?(?:{_NOON}){optional}(?P<zone>Z|[-+]\S+)?", re.IGNORECASE)
+    for date, optional in (
         # Day first, as everywhere that dates have dots.
         (r"(?P<day>\d{1,2})\.(?P<month>\d{1,2})\.(?P<year>\d{4}|\d{2})", "?"),
         (r"(?P<year>\d{4})/(?P<month>\d{1,2})/(?P<day>\d{1,2})", "?"),

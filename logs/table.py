@@ -71,7 +71,7 @@ class Table:
 
         array = self.column(header)
         if pa.types.is_string(array.type):  # one cell that is no date makes text of them all
-            return parser_of(next((str(cell) for cell in array if cell.is_valid), "")) is not float
+            return parser_of(next((text for text in map(_text, array.to_pylist()) if text), "")) is not float
         return bool(pa.types.is_temporal(array.type))
 
     def _parsed(self, header: str, array: Any) -> FloatArray:
@@ -79,8 +79,7 @@ class Table:
         values = np.full(len(array), np.nan)
         parse: Callable[[str], float] | None = None
         for row, cell in enumerate(array.to_pylist()):
-            text = (cell or "").strip()
-            if text in MISSING or is_state(text):
+            if not (text := _text(cell)):
                 continue
             parse = parse or parser_of(text)
             try:
@@ -95,6 +94,12 @@ class Table:
                     f"{self.where}: {self.locate(row)}: '{shown}' in column '{header}' is not {kind}; {advice}"
                 ) from error
         return values
+
+
+def _text(cell: str | None) -> str:
+    """What a cell says, "" where that is that there is no value."""
+    text = (cell or "").strip()
+    return "" if text in MISSING or is_state(text) else text
 
 
 def read_table(path: Path) -> Table:

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pyarrow as pa
+import pytest
 from pyarrow import parquet
 
 from logs.load import load_recording
@@ -40,6 +41,13 @@ def test_they_are_read_beside_decimal_commas_and_in_a_parquet_file(tmp_path: Pat
         recording = load_recording(tmp_path / "r.parquet")
         assert np.isnan(recording.position).tolist() == [False, True, False]
         assert "position_in: 'Pt Created' in place of a value | taken as missing | 1 | 2" in said(recording)
+
+
+def test_a_word_for_the_first_time_hides_no_calendar(tmp_path: Path) -> None:
+    rows = "No Data,3,0\n05-Mar-24 08:00:00,3,0\n05-Mar-24 08:00:01,4,0.1\n"
+    recording = load(tmp_path, "time [ms],command_psi,position_in\n" + rows)
+    assert np.diff(recording.time_s) == pytest.approx([1.0]), "dates are seconds, whatever the header says"
+    assert "rows without a usable time | left out" in said(recording)
 
 
 def test_any_other_word_is_refused_still(tmp_path: Path) -> None:

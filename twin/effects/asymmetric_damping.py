@@ -53,9 +53,11 @@ def _one_way(slot: int) -> Callable[[Coefficients, Sequence[float]], None]:
 
 
 def _throttled_one_way(lag: int, rate: int) -> Callable[[Coefficients, Sequence[float]], None]:
+    longer = _one_way(lag)
+
     def write(c: Coefficients, values: Sequence[float]) -> None:
-        # A needle valve beside a check valve: one way fills slowly and is bounded, the other is as designed.
-        c.valve[lag] *= 1.0 + values[0]
+        # A needle valve beside a check valve: one way fills slowly and is bounded, too.
+        longer(c, values)
         c.valve[rate] *= 1.0 - values[1]
 
     return write
