@@ -10,6 +10,7 @@ Source: Wood, Nature 466 (2010) 1102 (a synthetic record's summary statistics in
 from __future__ import annotations
 
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -19,7 +20,7 @@ from logs.spoken import HOUSE, Spoken
 from twin.case import Case
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
-from twin.events.teeth import Slips, Teeth, Valve, fixed_in_place, teeth, together
+from twin.events.teeth import Pushes, Slips, Teeth, Valve, fixed_in_place, pushes, teeth, together
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, evaluated, fit
 from twin.fit.space import Cause, Space, cause_starts, make_space
@@ -34,7 +35,7 @@ _OTHERS = 5
 _ALIKE = 1.5
 #: What it may leave at the most of the squares that the design misses by: it is no worse a model for being a wild one.
 _LEAVES = 0.7
-_ROUNDS = 6
+_ROUNDS, _THREADS = 6, 2
 #: Causes up to which what was accepted is believed, if it slips: two are rare, and more are what a wild path seems.
 _BESIDE = 2
 _SEED = 20101102
@@ -75,7 +76,7 @@ def slipping(case: Case, decision: Decision) -> Decision | None:
     channel = decision.findings.channel
     if channel.name != "position" or any(trial.pressure is None for trial in channel.trials):
         return None
-    look = _Look(channel, _valve(case))
+    look = _looking(channel, _valve(case))
     seen = look.teeth(channel.measured)
     if seen.count < _MANY or fixed_in_place(seen):
         return None
@@ -92,7 +93,13 @@ def slipping(case: Case, decision: Decision) -> Decision | None:
 def _likeliest(case: Case, decision: Decision, look: _Look, seen: Teeth) -> Fit | None:
     """Of what makes such teeth the hypothesis that leaves least, its numbers fitted as far as its teeth stay alike."""
     channel = decision.findings.channel
-    able = [evaluated(channel, space, z) for space, z in _slips(case, decision) if look.alike(space.plant(z), seen)]
+
+    def tried(one: tuple[Space, FloatArray]) -> Fit | None:
+        space, z = one
+        return evaluated(channel, space, z) if look.alike(space.plant(z), seen) else None
+
+    with ThreadPoolExecutor(_THREADS) as pool:
+        able = [one for one in pool.map(tried, _slips(case, decision)) if one is not None]
     if not able:
         return None
     best = min(able, key=lambda one: one.mse)
@@ -102,15 +109,15 @@ def _likeliest(case: Case, decision: Decision, look: _Look, seen: Teeth) -> Fit 
 
 @dataclass(frozen=True, slots=True)
 class _Look:
-    """Looks for teeth in what a channel read or would have read."""
+    """Looks for teeth in what a channel read or would have read, through the same `noise` every time, shape (n,)."""
 
     channel: Channel
-    valve: Valve
+    pushed: tuple[Pushes, ...]
+    noise: FloatArray
 
     def of(self, plant: Plant) -> Teeth:
-        """The teeth that a plant would have shown, through the same noise every time."""
-        noise = np.random.default_rng(_SEED).standard_normal(self.channel.measured.size)
-        return self.teeth(self.channel.prediction(plant) + self.valve.sigma * noise)
+        """The teeth that a plant would have shown."""
+        return self.teeth(self.channel.prediction(plant) + self.noise)
 
     def alike(self, plant: Plant, seen: Teeth) -> bool:
         """Whether a plant would have shown about as many teeth, and about as long ones."""
@@ -125,11 +132,13 @@ class _Look:
         rows, use = np.arange(reading.size), self.channel.use
         reading = np.interp(rows, rows[use], reading[use])
         ends = np.cumsum([trial.recording.n for trial in self.channel.trials])[:-1]
-        some = []
-        for trial, read in zip(self.channel.trials, np.split(reading, ends), strict=True):
-            assert trial.pressure is not None
-            some.append(teeth(trial.recording.time_s, read, trial.pressure[trial.grid.offsets], self.valve))
-        return together(some)
+        return together(list(map(teeth, self.pushed, np.split(reading, ends))))
+
+
+def _looking(channel: Channel, valve: Valve) -> _Look:
+    driven = [(t.recording.time_s, t.pressure[t.grid.offsets]) for t in channel.trials if t.pressure is not None]
+    noise = np.random.default_rng(_SEED).standard_normal(channel.measured.size)
+    return _Look(channel, tuple(pushes(*one, valve) for one in driven), valve.sigma * noise)
 
 
 def _valve(case: Case) -> Valve:

@@ -9,7 +9,9 @@ where they suffice.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -29,7 +31,7 @@ from twin.remainder import SLIGHT
 from twin.tolerance import TOLERANCE
 from twin.upheld import EXPLAINED, HARDLY
 
-_STEPS = 5
+_STEPS, _THREADS = 5, 2
 #: A size is near enough when what it shows is within these bounds of what is needed.
 _NEAR = (0.8, 1.3)
 #: Share of a record's time that is the whole of it.
@@ -62,16 +64,16 @@ def detection_limits(
     channels: Sequence[Channel], base: Plant, scales: Scales, effects: Sequence[Effect], rules: DecisionRules
 ) -> tuple[EffectTest, ...]:
     """One line per cause that acts on a trajectory, by name: effects, then numbers; other stages' are left out."""
-    lines, numbers = [], []
+    lines, numbers = list[EffectTest](), list[EffectTest]()
     for channel in channels:
         basis = _nuisance(channel, base, scales)
         needed = max(2.0 * rules.evidence, max(rules.gain, least_gap(channel)) * channel.rows)
         detector = Detector(channel, base, scales, np.linalg.qr(basis)[0], channel.residuals(base), needed)
         stand_trial = effect_causes(channel, base)
-        for effect in effects:
-            if effect.stage in channel.stages and effect.evidence == "trajectory":
-                tried = [c.form for c in stand_trial if c.name == effect.name and c.form is not None]
-                lines.append(_best_form(detector, effect, tried))
+        acting = [e for e in effects if e.stage in channel.stages and e.evidence == "trajectory"]
+        tried = [[c.form for c in stand_trial if c.name == e.name and c.form is not None] for e in acting]
+        with ThreadPoolExecutor(_THREADS) as pool:
+            lines += pool.map(partial(_best_form, detector), acting, tried)
         for k, name in enumerate(channel.numbers):
             others = np.linalg.qr(np.delete(basis, k, axis=1))[0]
             numbers.append(_of_number(detector, name, others))

@@ -21,7 +21,7 @@ from twin.choose.decide import Decision
 from twin.choose.findings import Findings
 from twin.choose.score import yardstick_for
 from twin.diagnose import diagnose
-from twin.events.teeth import Teeth, Valve, fixed_in_place, teeth, turns
+from twin.events.teeth import Teeth, Valve, fixed_in_place, pushes, teeth, turns
 from twin.fit.channel import position_channel
 from twin.fit.fitting import evaluated
 from twin.fit.space import make_space
@@ -71,7 +71,7 @@ def detent(pressure: FloatArray, dt: float) -> FloatArray:
 
 def seen(recording: Recording) -> Teeth:
     assert recording.pressure is not None
-    return teeth(recording.time_s, recording.position, recording.pressure, VALVE)
+    return teeth(pushes(recording.time_s, recording.pressure, VALVE), recording.position)
 
 
 def detented(seed: int) -> Recording:

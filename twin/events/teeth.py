@@ -78,16 +78,34 @@ class Slips:
     model: Teeth
 
 
-def teeth(time_s: FloatArray, reading: FloatArray, pressure: FloatArray, valve: Valve) -> Teeth:
-    """The teeth of a recording without gaps; all of shape (n,)."""
-    period_s = float(np.median(np.diff(time_s)))
-    bell = max(_BELL_S / period_s, 1.0)
-    smooth = gaussian_filter1d(reading, bell, mode="nearest")
+@dataclass(frozen=True, slots=True, eq=False)
+class Pushes:
+    """How a valve was pushed at the times `time_s`: its smoothed pressure, and the rows at which that turns."""
+
+    time_s: FloatArray
+    psi: FloatArray
+    turned: list[int]
+    bell: float
+    valve: Valve
+
+
+def pushes(time_s: FloatArray, pressure: FloatArray, valve: Valve) -> Pushes:
+    """Those of a recording without gaps; both of shape (n,)."""
+    bell = max(_BELL_S / float(np.median(np.diff(time_s))), 1.0)
     psi = gaussian_filter1d(pressure, bell, mode="nearest")
+    turned = turns(psi, max(_TURNS * valve.sigma_p, _OF_DEADBAND * valve.deadband))
+    return Pushes(time_s, psi, turned, bell, valve)
+
+
+def teeth(pushed_by: Pushes, reading: FloatArray) -> Teeth:
+    """The teeth of a reading, shape (n,), of a valve that was pushed so."""
+    time_s, psi, valve = pushed_by.time_s, pushed_by.psi, pushed_by.valve
+    smooth = gaussian_filter1d(reading, pushed_by.bell, mode="nearest")
     going = smooth + valve.tau_s * np.gradient(smooth, time_s)
-    clear = _CLEAR * valve.tau_s * speed_sigma(valve.sigma, period_s, bell, valve.memory)
+    period_s = float(np.median(np.diff(time_s)))
+    clear = _CLEAR * valve.tau_s * speed_sigma(valve.sigma, period_s, pushed_by.bell, valve.memory)
     found: list[tuple[float, float, float]] = []
-    for start, stop in pairwise(turns(psi, max(_TURNS * valve.sigma_p, _OF_DEADBAND * valve.deadband))):
+    for start, stop in pairwise(pushed_by.turned):
         way = 1.0 if psi[stop] > psi[start] else -1.0
         pushed = np.flatnonzero(way * (going[start : stop + 1] - going[start]) > clear)
         if not pushed.size or stop - start - pushed[0] < _SHORTEST:

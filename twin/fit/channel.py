@@ -14,6 +14,7 @@ import numpy as np
 
 from logs.recording import FloatArray, Recording
 from twin.chain import chain_response, takes_air
+from twin.fit.compiled import in_noise
 from twin.fit.trial import Trial, concatenate
 from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_of, stem_response
 from twin.slots import S_CORE, V_REMEMBERS
@@ -90,10 +91,7 @@ class Channel:
 
     def residuals(self, plant: Plant) -> FloatArray:
         """Residuals in units of the noise."""
-        error = self.measured - self.prediction(plant)
-        if self.half > 0.0:
-            error -= np.clip(error, -self.half, self.half)
-        return np.where(self.use, error / self.sigma, 0.0)
+        return in_noise(self.measured, self.prediction(plant), self.use, self.sigma, self.half)
 
     def stands(self, plant: Plant) -> bool:
         """Whether the prediction stays put in every trial although the readings go somewhere."""

@@ -13,6 +13,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.fit.channel import Channel
+from twin.fit.compiled import at_all_rows
 from twin.fit.least_squares import jacobian
 from twin.fit.space import Space
 from twin.fit.trial import Trial
@@ -46,9 +47,7 @@ class Look:
         """About the Jacobian of the residuals and the priors of `space` at `z`, as a fit has them."""
         residuals = partial(self.residuals, space)
         few = jacobian(residuals, z, residuals(z), space.steps, space.upper)
-        use, data = self.whole.use, few[: self.rows.size]
-        between = [np.where(use, np.interp(np.arange(use.size), self.rows, column), 0.0) for column in data.T]
-        return np.vstack([np.array(between).T, few[self.rows.size :]])
+        return at_all_rows(few, self.rows, self.whole.use)
 
 
 def in_larger_steps(channel: Channel, larger: float = LARGER, least: int = LEAST_STEPS) -> Look:
