@@ -13,8 +13,9 @@ from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import staircase, trial_of
 from twin.case import make_case
 from twin.catalog import effect
+from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
-from twin.fit.channel import predict_reading
+from twin.fit.channel import chain_channel, predict_reading
 from twin.place import Place
 from twin.places import places
 from twin.plant import Inserted, Plant
@@ -94,3 +95,38 @@ def test_a_friction_that_drifts_through_two_recordings_is_told() -> None:
     (cause,) = outcome.diagnosis.causes
     assert cause.name == "friction_drift"
     assert cause.parameters["rate"].value == pytest.approx(4e-4, rel=0.1)
+
+
+ANEW = [(name, form, values) for name, form, values in DRIFTS if form in ("linear", "warm_up", "from_cold")]
+
+
+@pytest.mark.parametrize(("begins", "broken"), [((0.0, 10.0), False), ((0.0, 60.0), True), ((0.0, 0.0), False)])
+def test_what_may_begin_anew_stands_trial_where_a_clock_has_breaks(begins: tuple[float, ...], broken: bool) -> None:
+    trials = make_case([blank(begin_s) for begin_s in begins], DESIGN).trials
+    assert [t.place.broken for t in trials] == [broken, broken]
+    forms = {cause.form.name for cause in effect_causes(chain_channel(trials, 0.001)) if cause.form is not None}
+    assert ({"linear_anew", "warm_up_anew", "from_cold_anew"} & forms != set()) == broken
+    assert "linear" in forms
+
+
+@pytest.mark.parametrize(("name", "form", "values"), ANEW)
+def test_what_begins_anew_does_so_in_each_recording_and_not_in_its_parts(
+    name: str, form: str, values: tuple[float, ...]
+) -> None:
+    as_before = Plant(DESIGN, (Inserted(name, effect(name).form(form), values),))
+    begun_anew = Plant(DESIGN, (Inserted(name, effect(name).form(f"{form}_anew"), values),))
+    part = Place(1, 2, since_s=940.0, span_s=1000.0, within_s=40.0, whole_s=100.0, broken=True)
+    for place, like in ((None, None), (Place(1, 2, 900.0, 1000.0, broken=True), None), (part, Place(since_s=40.0))):
+        found, expected = begun_anew.coefficients(60.0, place), as_before.coefficients(60.0, like)
+        for what in ("valve", "sensor", "close_shift", "open_shift"):
+            np.testing.assert_array_equal(getattr(found, what), getattr(expected, what))
+
+
+@pytest.mark.thorough
+def test_friction_whose_drift_began_anew_on_a_shared_clock_is_told() -> None:
+    plant = Plant(DESIGN, (Inserted("friction_drift", effect("friction_drift").form("linear"), (8e-4,)),))
+    first, second = (trial_of(plant, staircase(k), k)[0].recording for k in (1, 2))
+    later = replace(second, time_s=second.time_s + 3600.0)
+    (cause,) = diagnose([first, later], DESIGN, (), UP_TO_TWO).diagnosis.causes
+    assert cause.name == "friction_drift"
+    assert cause.parameters["rate"].value == pytest.approx(8e-4, rel=0.1)

@@ -27,6 +27,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
     """
     records = max((trial.place.of for trial in channel.trials), default=1)
     several = len(channel.trials) > 1
+    broken = any(trial.place.broken for trial in channel.trials)
     settled = base is not None and bool(base.coefficients(0.0).sensor[S_SEEN])
     refreshed = not settled and all(trial.fresh is not None for trial in channel.trials)
     return [
@@ -36,6 +37,7 @@ def effect_causes(channel: Channel, base: Plant | None = None) -> list[Cause]:
         for form, values in _forms(effect, base)
         if not (form.once and several)
         and (not form.apart or 2 <= records <= form.apart)
+        and (broken or not form.anew)
         and (refreshed or not form.seen)
         and not form.described
         and (channel.name == "pressure" or not form.by_pressure)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from math import exp
 
 from logs.recording import Recording
+from twin.anew import anew
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import WHEN
 from twin.slots import (
@@ -179,6 +180,7 @@ EFFECT = Effect(
     "from_cold: + excess exp(-t/settling), of a design that was taken when it was warm; "
     "gradual: + change / (1 + exp((middle - t) / takes)), as packing that swells; "
     "sudden_easing: a step of which a share goes again, as packing that is tightened relaxes; "
+    "..._anew: the same, begun anew in each recording, though they share a clock; "
     "goes_on: the rate from recording to recording, as they are given, though each has a clock of its own; "
     "on_stem: what it has grown by, s, does not widen the play but keeps the stem short: |w - x| less k s pulls it",
     source="Olsson, Astrom, Canudas de Wit, Gafvert, Lischinsky, Eur. J. Control 4 (1998) 176",
@@ -187,6 +189,9 @@ EFFECT = Effect(
         Form("goes_on", (_RATE,), _goes_on, apart=_MANY),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("from_cold", (_EXCESS, _SETTLING), _from_cold),
+        Form("linear_anew", (_RATE,), anew(_linear), anew=True),
+        Form("warm_up_anew", (_CHANGE, _SETTLING), anew(_warm_up), anew=True),
+        Form("from_cold_anew", (_EXCESS, _SETTLING), anew(_from_cold), anew=True),
         Form("wear", (_WEAR,), _wear),
         Form("sudden", (_CHANGE, _WHEN), _sudden),
         Form("gradual", (_CHANGE, _MIDDLE, _TAKES), _gradual, _middles),

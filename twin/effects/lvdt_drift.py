@@ -9,6 +9,7 @@ from functools import cache
 import numpy as np
 
 from logs.recording import FloatArray, Recording
+from twin.anew import anew
 from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.shapes import WHEN
 from twin.slots import (
@@ -198,6 +199,7 @@ EFFECT = Effect(
     stage="sensor",
     claim="The zero of the reading moves gradually with time.",
     equations="y = x + rate t, or x + change (1 - exp(-t / settling)), or x + change (t / 300 tau)^0.5 (root), "
+    "..._anew: the same, begun anew in each recording, though they share a clock; "
     "or x + there (1 - cos) + along sin (2 pi t / period), or x - there cos + along sin (swing), "
     "or x + a spline through its value at ten times, "
     "or x + a curve of each recording's own through up to five values (apart); a jump is no drift, only told from it",
@@ -206,6 +208,8 @@ EFFECT = Effect(
         Form("linear", (_RATE,), _linear),
         Form("warm_up", (_CHANGE, _SETTLING), _warm_up),
         Form("root", (_QUARTER,), _root),
+        Form("linear_anew", (_RATE,), anew(_linear), anew=True),
+        Form("warm_up_anew", (_CHANGE, _SETTLING), anew(_warm_up), anew=True),
         Form("cycle", (_THERE, _ALONG, _PERIOD), _cycle),
         Form("swing", (_THERE, _ALONG, _PERIOD), _swing),
         Form("apart", _ZEROS, _apart, apart=KNOTS),
