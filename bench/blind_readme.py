@@ -37,10 +37,14 @@ def newest_plant(strangers: str) -> Column:
 
 
 def newest_sets(strangers: str, claims: Claims) -> Column:
-    """The first rows of that table added up, where counts can be; calibration of those sets whose claims are kept."""
+    """The first rows of that table added up, where counts can be, or else from the least to the largest figure.
+
+    Calibration is that of those sets whose claims are kept.
+    """
     rows = _sets(strangers)[:SETS]
     sums = {m.name: added(shown(m, figure(cells[m.column])) for cells in rows) for m in GOALS}
-    found = {name: one if one.of else None for name, one in sums.items()}
+    each = {m.name: spread(m, [one for cells in rows if (one := figure(cells[m.column]))]) for m in GOALS}
+    found = {name: one if one.of else each[name] for name, one in sums.items()}
     found["calibration error"] = error_of(claims_of(claims, [cells["seed"] for cells in rows]))
     name = f"the newest {len(rows)} sets"
     cases = sum(int(cells["cases"]) for cells in rows if cells["cases"].isdigit())
@@ -64,13 +68,23 @@ def newest_check(check: Check) -> Column:
 
 
 def newest_checks(checks: Sequence[Check]) -> Column:
-    """Several checks added up, where counts can be: one draw may flatter."""
+    """Several checks added up, where counts can be, or else from the least to the largest: one draw may flatter."""
     sums = {m.name: shown(m, together(m, checks)) for m in GOALS}
-    found = {name: one if one and one.of else None for name, one in sums.items()}
+    each = {m.name: spread(m, [one for check in checks if (one := check.figures["all"].get(m.row))]) for m in GOALS}
+    found = {name: one if one and one.of else each[name] for name, one in sums.items()}
     found["calibration error"] = calibration_error(pooled(checks))
     valves, anchor = sum(check.trials for check in checks), f"the-newest-{len(checks)}-together"
     head = f"[newest {len(checks)} checks](docs/blind.md#{anchor}) together: {valves} valves"
     return Column(head, f"the newest {len(checks)} checks", found)
+
+
+def spread(measure: Measure, figures: Sequence[Figure]) -> Figure | None:
+    """Means or medians of several sets, between which that of all of them lies; the worst one is held to the target."""
+    if not figures:
+        return None
+    ranked = sorted(figures, key=lambda one: one.value)
+    worst = ranked[-1 if measure.most else 0]
+    return Figure(f"{ranked[0].text} to {ranked[-1].text}", worst.value)
 
 
 def readme(checks: Sequence[Check], strangers: str, claims: Claims) -> str:

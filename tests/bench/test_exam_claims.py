@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 
 from bench import exam
 from bench.blind_docs import HOUSE
-from bench.blind_pages import tables
-from bench.blind_readme import SETS, newest_sets
+from bench.blind_pages import figure, tables
+from bench.blind_readme import GOALS, SETS, newest_sets, spread
 from bench.blind_summary import MEASURES
 from bench.exam_claims import claims_of, counted, keep, read, seed_of
 
@@ -70,3 +70,16 @@ def test_claims_are_kept_of_all_sets_that_are_added_up() -> None:
     seeds = [row[heads.index("seed")] for row in rows[:SETS]]
     kept = json.loads((HOUSE / "docs" / "strangers.json").read_text(encoding="utf-8"))
     assert [seed for seed in seeds if seed not in kept] == []
+
+
+def test_means_of_several_sets_stand_from_the_least_to_the_largest_and_the_worst_is_held_to_the_target() -> None:
+    most, least = (next(m for m in GOALS if m.column == column) for column in ("set", "closure"))
+    figures = [one for cell in ("1.2", "1.7", "1.05") if (one := figure(cell))]
+    found = spread(most, figures)
+    assert found is not None
+    assert found.text == "1.05 to 1.7"
+    assert most.missed(found)
+    small = spread(least, figures)
+    assert small is not None
+    assert small.value == 1.05
+    assert spread(most, []) is None
