@@ -25,6 +25,8 @@ _DATES = tuple(
         (r"(?P<month>\d{1,2})/(?P<day>\d{1,2})/(?P<year>\d{4})", ""),
     )
 )
+#: 2000-01-01, from which dates are counted [s since 1970].
+EPOCH_S = 946_684_800.0
 #: What is read, for an operator whose file has something else.
 FORMS = (
     "2024-03-05 08:00:00.5, 2024/03/05 08:00:00, 05.03.2024 08:00:00, 05-Mar-24 08:00:00, "
@@ -56,7 +58,7 @@ def date_seconds(text: str) -> float:
     """Seconds since 2000, in UTC where the text names no zone. Raises: `ValueError` for what is no such date."""
     found = next(filter(None, (form.fullmatch(text) for form in _DATES)), None)
     when = datetime.fromisoformat((_iso(found) if found else text).replace(",", "."))
-    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - 946_684_800.0
+    return (when if when.tzinfo else when.replace(tzinfo=UTC)).timestamp() - EPOCH_S
 
 
 def _iso(date: re.Match[str]) -> str:

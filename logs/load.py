@@ -8,9 +8,11 @@ from typing import TYPE_CHECKING
 
 from hal.counted import counted
 from hal.errors import BadInput
+from logs import own_times
 from logs.assemble import Signals, assemble
 from logs.layout import is_run_folder
-from logs.recording import CommandTiming, DataNote, Recording
+from logs.long_form import by_tag
+from logs.recording import CommandTiming, DataNote, FloatArray, Recording
 from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pairs, split_header
 from logs.spoken import WRITTEN
 from logs.table import Table, read_table
@@ -100,7 +102,7 @@ def _as_we_name_them(names: Sequence[str]) -> dict[Role, str]:
 def _load_table(
     path: Path, mapping: Mapping[Role, str], units: Mapping[Role, str], command_timing: CommandTiming
 ) -> Recording:
-    table = read_table(path)
+    table = by_tag(read_table(path))
     if not table.has_header and not mapping:
         raise BadInput(
             f"{path}: the file has no header; add a line such as time_s,command_psi,position_in, "
@@ -108,17 +110,40 @@ def _load_table(
         )
     columns = assign(table.headers, mapping, str(path))
     stated = {role: _unit(role, columns, units, table) for role in columns}
+    values, own = _values(table, columns, "time" in mapping)
     signals = Signals(
-        values={role: table.number(column.header) for role, column in columns.items()},
+        values=values,
         conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
         headers={role: column.header for role, column in columns.items()},
         unsaid=tuple(role for role, unit in stated.items() if not unit),
-        notes=(*table.notes, *_said_instead(table, columns)),
+        notes=(*table.notes, *_said_instead(table, columns), *own),
         locate=table.locate,
     )
     foreign = tuple(role for role, unit in stated.items() if _foreign(signals, role, unit))
     meta = {"file": str(path), "foreign": foreign, WRITTEN: stated}
     return assemble(signals, name=path.stem, where=str(path), command_timing=command_timing, meta=meta)
+
+
+def _values(
+    table: Table, columns: Mapping[Role, Column], one_time: bool
+) -> tuple[Mapping[Role, FloatArray], tuple[DataNote, ...]]:
+    """The columns as numbers, in the rows of the position where each has times of its own and none is chosen for all.
+
+    Raises: `BadInput` where those are written in different ways.
+    """
+    clock = {} if one_time else own_times.clocks(table.headers, columns)
+    kinds = {(table.is_calendar(header), _written(own_times.clock(header), table)) for header in clock.values()}
+    if len(kinds) > 1:
+        named = " and ".join(f"'{header}'" for header in dict.fromkeys(clock.values()))
+        raise BadInput(
+            f"{table.where}: the times in {named} are not written alike; give them one unit, or map one time"
+        )
+    times = {role: table.number(header, since_first=False) for role, header in clock.items()}
+    if not times or own_times.in_step(times):
+        return {role: table.number(column.header) for role, column in columns.items()}, ()
+    values = {role: table.number(columns[role].header) for role in times}
+    found = own_times.at_positions(values, times)
+    return found, (own_times.note(columns, found["time"].size),)
 
 
 def _said_instead(table: Table, columns: Mapping[Role, Column]) -> Iterator[DataNote]:

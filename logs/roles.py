@@ -21,7 +21,7 @@ QUANTITY: Mapping[Role, Quantity] = {
     "target": "position",
 }
 _WORDS: Mapping[Role, frozenset[str]] = {
-    "time": frozenset({"time", "t", "timestamp", "datetime", "elapsed", "elapsed time", "relative time"}),
+    "time": frozenset({"time", "t", "timestamp", "datetime", "elapsed", "elapsed time", "relative time", "x value"}),
     "command": frozenset({"command", "cmd", "u", "ep command", "e/p command", "command pressure", "pressure command"}),
     "pressure": frozenset({"pressure", "p", "press", "actuator pressure", "measured pressure", "ep pressure"}),
     "position": frozenset({"position", "pos", "x", "lvdt", "stem position", "stem", "valve position", "travel"}),
@@ -109,6 +109,11 @@ def _mapped(role: Role, name: str, headers: Sequence[str], where: str) -> Column
     if name.isdecimal() and 1 <= int(name) <= len(headers):  # no header reads so: it is the column's number
         return split_header(headers[int(name) - 1], QUANTITY[role])
     raise BadInput(f"{where}: --map {role}={name}: no such column; the columns are {_listed(headers)}")
+
+
+def is_clock(label: str) -> bool:
+    """Whether a column of that label, without its unit, is a time."""
+    return label in _WORDS["time"]
 
 
 def _guessed(role: Role, headers: Sequence[str], where: str) -> Column | None:

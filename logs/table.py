@@ -12,10 +12,11 @@ from typing import Any
 import numpy as np
 
 from hal.errors import BadInput
-from logs.calendar_text import FORMS, looks_like_time, parser_of
+from logs.calendar_text import EPOCH_S, FORMS, looks_like_time, parser_of
 from logs.dialect import MISSING, Dialect, clean, sniff, split
 from logs.historian import is_state
 from logs.recording import DataNote, FloatArray
+from logs.roles import is_clock, split_header
 from logs.rows import check_quotes, line_of, why_not
 
 
@@ -36,13 +37,16 @@ class Table:
     header_units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[DataNote, ...] = ()
 
-    def number(self, header: str) -> FloatArray:
-        """Raises: `BadInput` with line, column and cell for the first cell that is no number."""
+    def number(self, header: str, since_first: bool = True) -> FloatArray:
+        """Raises: `BadInput` with line, column and cell for the first cell that is no number.
+
+        Dates of the file's own kind are seconds since the first row, or since 2000, as those that are text.
+        """
         import pyarrow as pa
 
         array = self.column(header)
         if pa.types.is_temporal(array.type):
-            return _seconds(array)
+            return _seconds(array, since_first)
         if pa.types.is_null(array.type):
             return np.full(len(array), np.nan)
         if pa.types.is_string(array.type) or pa.types.is_large_string(array.type):
@@ -203,13 +207,16 @@ def _read_arrow(path: Path, parquet: bool) -> Table:
     )
 
 
-def _seconds(array: Any) -> FloatArray:
-    """Dates or times of day as seconds, from the first row on for dates (float64 keeps microseconds then)."""
+def _seconds(array: Any, since_first: bool) -> FloatArray:
+    """Dates or times of day as seconds; dates from the first row on (float64 keeps microseconds then), or from 2000."""
     import pyarrow as pa
 
     unit_s = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}.get(getattr(array.type, "unit", ""), 86_400.0)
     wide = array.cast(pa.int32() if array.type.bit_width == 32 else pa.int64()).cast(pa.int64())
-    first = next((value.as_py() for value in wide if value.is_valid), 0) if not pa.types.is_time(array.type) else 0
+    first = 0
+    if not pa.types.is_time(array.type):
+        first = next((value.as_py() for value in wide if value.is_valid), 0)
+        first = first if since_first else round(EPOCH_S / unit_s)
     counts = np.asarray(wide.to_numpy(zero_copy_only=False), dtype=np.float64) if wide.null_count else None
     if counts is None:
         return np.asarray((wide.to_numpy(zero_copy_only=False) - first) * unit_s, dtype=np.float64)
@@ -228,9 +235,14 @@ def _body(text: bytes, skipped: int) -> bytes:
     return text[start:] or b"\n"
 
 
+def _is_clock(header: str) -> bool:
+    return is_clock(split_header(header, "time").label)
+
+
 def _unique(headers: Sequence[str], where: str) -> tuple[str, ...]:
-    """Empty headers get their number; two of the same name would make it a guess which is meant."""
+    """Empty headers get their number, and times behind the first; two others of one name would make it a guess."""
     named = [header or f"column {number + 1}" for number, header in enumerate(headers)]
+    named = [f"{h} #{named[:k].count(h) + 1}" if h in named[:k] and _is_clock(h) else h for k, h in enumerate(named)]
     twice = sorted({header for header in named if named.count(header) > 1})
     if twice:
         raise BadInput(f"{where}: two columns are called '{twice[0]}'; rename one of them")
