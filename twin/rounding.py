@@ -51,15 +51,35 @@ def rounding_down(recordings: Sequence[Recording], plant: Plant, sensing: Sensin
     if stops:
         # the model of another zero would start elsewhere, and stay there as long as the pressure lets it
         error = channel.residuals(plant)
-        errors = [_at_stops([error[rows] - off_in for rows in stops], beside, sensing.step) for off_in in offs_in]
-    else:
-        whole = [channel.residuals(Plant(plant.design, (*plant.inserted, *o)))[channel.use] for o in options]
-        errors = whole if lacking > 0.0 else [_beyond(e, 0.5 * sensing.step) for e in whole]
+        at = [_at_stops([error[rows] - off_in for rows in stops], beside, sensing.step) for off_in in offs_in]
+        told = _told(at, sensing.step, means=not beside)
+        if beside or not _between(at, told, sensing.step):
+            return options[told]
+    whole = [channel.residuals(Plant(plant.design, (*plant.inserted, *o)))[channel.use] for o in options]
+    errors = whole if lacking > 0.0 else [_beyond(e, 0.5 * sensing.step) for e in whole]
+    return options[_told(errors, sensing.step, means=lacking > 0.0)]
+
+
+def _told(errors: Sequence[FloatArray], step: float, means: bool) -> int:
+    """Which of the options is the case whose errors these are: the first, unless another is clearly better.
+
+    `means`: whether a mean error of next to nothing is enough.
+    """
     misfits = [float(np.mean(e**2)) for e in errors]
-    best = min(range(len(options)), key=lambda k: misfits[k])
-    means = lacking > 0.0 or (stops and not beside)
-    near = means and abs(float(np.mean(errors[best]))) < 0.5 * _NEARLY * sensing.step
-    return options[best] if near or misfits[best] < _CLEARLY * misfits[0] else ()
+    best = min(range(len(misfits)), key=lambda k: misfits[k])
+    near = means and _off(errors[best], step) < _NEARLY
+    return best if near or misfits[best] < _CLEARLY * misfits[0] else 0
+
+
+def _between(errors: Sequence[FloatArray], told: int, step: float) -> bool:
+    """Whether what was read lies between the first and another: a stop that is left again at once says neither."""
+    first, *others = (_off(e, step) for e in errors)
+    return _off(errors[told], step) >= _NEARLY and first < 1.0 > min(others)
+
+
+def _off(error: FloatArray, step: float) -> float:
+    """The mean error in half steps."""
+    return abs(float(np.mean(error))) / (0.5 * step)
 
 
 def _at_stops(errors: Sequence[FloatArray], beside: bool, step: float) -> FloatArray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -22,8 +23,10 @@ LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), 
 LOPSIDED = Inserted("asymmetric_damping", effect("asymmetric_damping").form("two_lags"), (-0.2,))
 
 
-def coarse(*inserted: Inserted, down: bool, design: DesignModel = DESIGN) -> tuple[Recording, Sensing]:
-    to_the_stops = np.repeat([3.0, 14.0], 400)
+def coarse(
+    *inserted: Inserted, down: bool, design: DesignModel = DESIGN, to_psi: Sequence[float] = (3.0, 14.0)
+) -> tuple[Recording, Sensing]:
+    to_the_stops = np.repeat(to_psi, 400)
     trial, _ = trial_of(Plant(design, inserted), np.concatenate([staircase(), to_the_stops]))
     steps = trial.recording.position / STEP_IN
     position = STEP_IN * (np.floor(steps) if down else np.round(steps))
@@ -73,6 +76,16 @@ def test_rests_off_the_stops_that_all_round_up_are_no_rounding_up() -> None:
     seen = Sensing((Events({}, none, none, Tail(0, np.empty(0))),), {"sensor_quantization": {}}, step_in)
     coarse = replace(part, position=step_in * np.round(part.position / step_in))
     assert rounding_down([coarse], Plant(DESIGN), seen) == ()
+
+
+@pytest.mark.parametrize(("down", "every"), [(True, 5), (False, 3)])
+def test_a_stop_that_says_neither_leaves_it_to_the_rest_of_the_record(down: bool, every: int) -> None:
+    """Read a quarter of a step low in the mean, it may be as well of a display that rounds as of one that cuts."""
+    recording, seen = coarse(down=down, to_psi=[3.0])
+    held = trial_of(Plant(DESIGN), recording.command)[1] < 0.1 * STEP_IN
+    read = np.where(np.arange(recording.n) % every == 0, -STEP_IN, 0.0)
+    found = rounding_down([replace(recording, position=np.where(held, read, recording.position))], Plant(DESIGN), seen)
+    assert [one.values for one in found] == ([pytest.approx((-0.5 * STEP_IN,))] if down else [])
 
 
 def test_a_larger_zero_error_is_no_rounding() -> None:
