@@ -16,8 +16,9 @@ from logs.recording import FloatArray
 from twin.effect import Coefficients, Form
 from twin.kernels.active import same
 from twin.kernels.ep import ep_kernel
+from twin.kernels.play import play_target
 from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
-from twin.kernels.sinking import sunk_by
+from twin.kernels.sinking import soft_reach, sunk_by
 from twin.kernels.valve import valve_kernel
 from twin.place import Place
 from twin.refresh import Freshness
@@ -35,6 +36,8 @@ from twin.slots import (
     S_WAITS,
     S_ZERO,
     V_HIGH,
+    V_LOW,
+    V_OUTER,
     V_RATE_CLOSE,
     V_RATE_OPEN,
     V_TAU_CLOSE_S,
@@ -194,6 +197,19 @@ def core_at(c: Coefficients, reading: float) -> float:
 def stem_at(c: Coefficients, reading: float) -> float:
     """The stem position, within the stops, at which the static sensor reads `reading` at the start."""
     return stem_of(c, core_at(c, reading))
+
+
+def pulled_stem(c: Coefficients, core: float, pressure: float) -> float:
+    """The stem at rest with the core at `core` at the start: that of a soft linkage lags behind where pressure has it.
+
+    Any other play says nothing of where in it the stem is, nor does the reading show it.
+    """
+    stem, reach = stem_of(c, core), soft_reach(c.sensor)
+    if reach <= 0.0:
+        return stem
+    play = (c.valve[V_LOW], c.valve[V_HIGH]), curve_tables(c), c.spreads, c.weights, stem
+    (pulled,) = play_target(np.array([pressure]), np.array([-c.valve[V_OUTER]]), *play)
+    return stem_of(c, min(max(float(pulled), core - reach), core + reach))
 
 
 def stem_of(c: Coefficients, core: float) -> float:

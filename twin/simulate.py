@@ -13,7 +13,16 @@ from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.chain import chain_response
 from twin.insert import inserted_from, plant_of
-from twin.plant import Plant, core_at, pressure_response, reading_at, reading_response, stem_at, stem_response
+from twin.plant import (
+    Plant,
+    core_at,
+    pressure_response,
+    pulled_stem,
+    reading_at,
+    reading_response,
+    stem_at,
+    stem_response,
+)
 from twin.refresh import freshness
 from twin.slots import S_CORE, S_SEEN, V_REMEMBERS
 from twin.timegrid import TimeGrid, make_grid
@@ -89,8 +98,9 @@ def start_of(plant: Plant, recording: Recording, grid: TimeGrid) -> Start:
     middle = plant.design.compliance * (pressure - plant.design.offset)
     readings = _seen(recording.position, float(np.clip(middle, 0.0, plant.design.travel)))[:_FIRST_ROWS]
     c = plant.coefficients(recording.duration_s)
-    position = stem_at(c, float(np.median(readings)))
-    rest = Start(float(pressure), position, position, core_at(c, float(np.median(readings))))
+    core = core_at(c, float(np.median(readings)))
+    position = pulled_stem(c, core, float(pressure))
+    rest = Start(float(pressure), position, position, core)
     if not np.isfinite(recording.position).any():
         return rest
     rest = replace(rest, remembers=remembers(plant, recording, grid))

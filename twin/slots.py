@@ -1,8 +1,8 @@
 """Where each coefficient stands in the kernels' flat vectors. An effect writes here; a kernel reads here.
 
-Plain integers rather than an enum, because the compiled kernels use them as constants. Every slot has a neutral value
-in the vectors that the functions below make; a vector of neutral values is the design model of interfaces.md. Only ever
-append: the numbers are compiled into cached kernels.
+Plain integers and no enum: compiled kernels use them as constants. Every slot has a neutral value in the vectors that
+the functions below make; a vector of these is the design model of interfaces.md. Only ever append: the numbers are in
+cached kernels.
 """
 
 from __future__ import annotations
@@ -194,14 +194,14 @@ S_SLIPS_ABOVE = S_SLIPS_OPEN + 1  # and the speed from which it slips [position/
 S_LESS = S_SLIPS_ABOVE + 1  # by how much narrower than S_PLAY a worn linkage is at places from end to end [position]
 LESS = 4
 S_SOONER = S_LESS + LESS  # share of S_PLAY behind which half the pull of a soft linkage is there; 0: all at once
-S_COUNT = S_SOONER + 1
+S_SHARE = S_SOONER + 1  # and what of its pull is there then, beyond that half [-]
+S_COUNT = S_SHARE + 1
 
 FOREVER = 1e30
 
 #: Points of the position grid on which effects may bend the two curves.
 GRID = 65
-#: Elements of a distributed play.
-PLAYS = 12
+PLAYS = 12  # elements of a distributed play
 
 
 def stem_stops(valve: FloatArray) -> tuple[float, float]:

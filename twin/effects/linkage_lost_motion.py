@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_SOONER, S_ZERO
+from twin.slots import LESS, S_LESS, S_PLAY, S_SHARE, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_SOONER, S_ZERO
 
 _PLAY = Parameter(
     name="play",
@@ -76,6 +76,18 @@ _SOONER = Parameter(
 )
 
 
+#: Of the play, from which on a sleeve pulls that has none.
+_NONE = 1e-6
+_SHARE = replace(
+    _SOONER,
+    name="share",
+    upper=0.9,
+    starts=(0.2, 0.4),
+    doc="share of the stem's way that a sleeve in the play passes on at once",
+    neutral=0.3,
+)
+
+
 _WORN = tuple(
     replace(_PLAY, name=name, starts=starts, doc=f"full width with the stem {where}")
     for name, where, starts in (
@@ -117,6 +129,11 @@ def _soft(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[S_SOONER] = values[1]
 
 
+def _sleeve(c: Coefficients, values: Sequence[float]) -> None:
+    _apply(c, values)
+    c.sensor[[S_SOONER, S_SHARE]] = _NONE, values[1] - 0.5
+
+
 def _slips(c: Coefficients, values: Sequence[float]) -> None:
     c.sensor[[S_SLIPS, S_SLIPS_OPEN]] = values[:2]
     c.sensor[S_SLIPS_ABOVE] = values[2] * c.design.rate_limit
@@ -128,8 +145,9 @@ EFFECT = Effect(
     claim="There is play between the stem and the LVDT core.",
     equations="y = max(x - play/2, min(x + play/2, y)); one_sided: y + play/2, as the zero was set on one side; sinks: "
     "within the play dy/dt = (x + play/2 - y) / sinks, sinks_back: (x - play/2 - y) / sinks; worn: play goes by x, "
-    "straight between thirds of the travel; soft: the mean of that and of the same with sooner play; a coupling that "
-    "slips has no play, only told from what it resembles: dy = (1 - lost) dx above a speed",
+    "straight between thirds of the travel; soft: the mean of that and of the same with sooner play; sleeve: share of "
+    "x, and the rest of that; a coupling that slips has no play, only told from what it resembles: dy = (1 - lost) dx "
+    "above a speed",
     source="Nordin, Gutman, Automatica 38 (2002) 1633; Tao, Kokotovic, Adaptive Control of Systems with Actuator and "
     "Sensor Nonlinearities (Wiley 1996)",
     forms=(
@@ -139,6 +157,7 @@ EFFECT = Effect(
         Form("sinks_back", (_PLAY, _SINKS), _sinks_back),
         Form("worn", _WORN, _worn),
         Form("soft", (_PLAY, _SOONER), _soft),
+        Form("sleeve", (_PLAY, _SHARE), _sleeve),
         Form(
             "slips",
             (_LOST, _LOST_OPEN, _ABOVE),

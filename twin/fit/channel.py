@@ -16,7 +16,17 @@ from logs.recording import FloatArray, Recording
 from twin.chain import chain_response, takes_air
 from twin.fit.compiled import in_noise
 from twin.fit.trial import Trial, concatenate
-from twin.plant import Plant, core_at, picked_up, pressure_response, reading_response, stem_at, stem_of, stem_response
+from twin.plant import (
+    Plant,
+    core_at,
+    picked_up,
+    pressure_response,
+    pulled_stem,
+    reading_response,
+    stem_at,
+    stem_of,
+    stem_response,
+)
 from twin.slots import S_CORE, V_REMEMBERS
 
 #: Of what the readings go through: a prediction that goes through less stays put.
@@ -53,8 +63,11 @@ def _reading(plant: Plant, trial: Trial, pressure: FloatArray | None) -> FloatAr
     c = plant.coefficients(trial.recording.duration_s, trial.place)
     picked = picked_up(c, trial.start_pressure)
     core = core_at(c, trial.start_position - picked)
-    start, c.sensor[S_CORE] = stem_of(c, core), core
-    play = start if trial.begun.play is None else stem_at(c, trial.begun.play - picked)
+    c.sensor[S_CORE] = core
+    if trial.begun.play is None:
+        start = play = pulled_stem(c, core, trial.start_pressure)
+    else:
+        start, play = stem_of(c, core), stem_at(c, trial.begun.play - picked)
     c.valve[V_REMEMBERS] = trial.begun.remembers
     if pressure is None:
         pressure, stem = chain_response(c, trial.grid, trial.recording.command, trial.start_pressure, start, play)

@@ -1,6 +1,6 @@
 """A loose linkage between the stem and the core: the core goes along from the ends of the play, or sinks to one.
 
-It may be worn where the stem is most, and tighter elsewhere; or soft, so that half of its pull is there sooner.
+It may be worn where the stem is most, and tighter elsewhere; or soft, so that a part of its pull is there sooner.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.active import acts
 from twin.kernels.play import plain_play
-from twin.slots import LESS, S_LESS, S_PLAY, S_SINKS_S, S_SOONER, S_TRAVEL
+from twin.slots import LESS, S_LESS, S_PLAY, S_SHARE, S_SINKS_S, S_SOONER, S_TRAVEL
 
 #: Where the core stands: pulled by all of the linkage, and by what of a soft one pulls sooner [position].
 CoreState = tuple[float, float]
@@ -22,7 +22,7 @@ _LESS = np.arange(S_LESS, S_LESS + LESS)
 def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: CoreState) -> tuple[FloatArray, CoreState]:
     """Where the core is, at times `t` [s] like `stem`, from `start`, and what it stands at then.
 
-    Without play it is where the stem is. A soft linkage pulls with half of itself from a narrower play on.
+    Without play it is where the stem is. A soft linkage pulls with a part of itself from a narrower play on.
     """
     if c[S_PLAY] <= 0.0:
         return stem, start
@@ -31,7 +31,19 @@ def core_of(t: FloatArray, stem: FloatArray, c: FloatArray, start: CoreState) ->
         return core, (float(core[-1]), start[1])
     sooner = np.empty_like(stem)
     plain_play(stem, 0.5 * c[S_SOONER] * c[S_PLAY], start[1], sooner)
-    return 0.5 * (core + sooner), (float(core[-1]), float(sooner[-1]))
+    share = share_sooner(c)
+    return (1.0 - share) * core + share * sooner, (float(core[-1]), float(sooner[-1]))
+
+
+def share_sooner(c: FloatArray) -> float:
+    """What of a soft linkage's pull is there from its narrower play on [-]."""
+    return 0.5 + float(c[S_SHARE])
+
+
+def core_at_first(c: FloatArray, state: CoreState) -> float:
+    """Where a core stands that is pulled so [position]."""
+    share = share_sooner(c)
+    return (1.0 - share) * state[0] + share * state[1]
 
 
 def _pulled(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> FloatArray:
@@ -45,6 +57,12 @@ def _pulled(t: FloatArray, stem: FloatArray, c: FloatArray, start: float) -> Flo
     return core
 
 
+def soft_reach(c: FloatArray) -> float:
+    """How far from the stem a soft linkage may leave the core [position]; 0 for any other."""
+    share = share_sooner(c)
+    return 0.5 * float(c[S_PLAY] * (1.0 - share + share * c[S_SOONER])) if c[S_SOONER] > 0.0 else 0.0
+
+
 def first_core(c: FloatArray, stem: float, core: float) -> CoreState:
     """Where a core begins that is said to be at `core`; not a number: wherever it had the time to go."""
     half = _half_at(stem, 0.5 * float(c[S_PLAY]), 0.5 * c[_LESS], float(c[S_TRAVEL]))
@@ -53,7 +71,9 @@ def first_core(c: FloatArray, stem: float, core: float) -> CoreState:
         return at, at
     reach = half * float(c[S_SOONER])
     sooner = max(stem - reach, min(stem + reach, at))
-    return max(stem - half, min(stem + half, 2.0 * at - sooner)), sooner
+    share = share_sooner(c)
+    wide = (at - share * sooner) / (1.0 - share)
+    return max(stem - half, min(stem + half, wide)), sooner
 
 
 def sunk_by(c: FloatArray) -> float:

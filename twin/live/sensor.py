@@ -9,7 +9,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.sensor import filters, lags_s, leading, static_reading, swings
-from twin.kernels.sinking import core_of, first_core
+from twin.kernels.sinking import core_at_first, core_of, first_core
 from twin.kernels.slipping import slipped, slips
 from twin.live.lag import Lag
 from twin.live.mean import Mean
@@ -32,7 +32,7 @@ class Sensor:
         self._filters: list[Lag | Swing] = [*lags, *filters_of_two]
         self._means = [Mean(float(c[S_WINDOW_S])) for _ in range(int(c[S_WINDOWS]))]
         self._rows: deque[tuple[float, float]] = deque(
-            [(0.0, float(self._static(np.array([0.5 * sum(self._core)]), np.zeros(1))[0]))]
+            [(0.0, float(self._static(np.array([core_at_first(c, self._core)]), np.zeros(1))[0]))]
         )
 
     @property

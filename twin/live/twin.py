@@ -12,7 +12,7 @@ import numpy as np
 
 from twin.chain import Chain
 from twin.live.sensor import Sensor
-from twin.plant import Plant, core_at, picked_up, stem_at
+from twin.plant import Plant, core_at, picked_up, pulled_stem
 from twin.simulate import Start, step_for
 from twin.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
 
@@ -47,9 +47,10 @@ class LiveTwin:
     ) -> LiveTwin:
         """The model at rest where the first readings show the valve; without a pressure, at the command."""
         c = plant.coefficients(duration_s)
-        stem = stem_at(c, reading)
         known = command if pressure is None or not math.isfinite(pressure) else pressure
-        return cls(plant, time_s, command, Start(known, stem, stem, core_at(c, reading)), duration_s)
+        core = core_at(c, reading)
+        stem = pulled_stem(c, core, known)
+        return cls(plant, time_s, command, Start(known, stem, stem, core), duration_s)
 
     def step(self, time_s: float, command: float, fresh: bool | None = None) -> tuple[float, float]:
         """Pressure and reading predicted at `time_s`; `command` was in force since the row before.
