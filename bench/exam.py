@@ -2,8 +2,8 @@
 
 The folder holds `design.toml` (or none), `caseNN/*.csv` (the recordings of one machine each) and `SEALED.json`: for
 each case, by themselves or all under `cases`, `cls` (healthy, number, single, pair, outsider) and `truth`, its causes.
-`unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise) is the same
-machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
+`unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise, in the unit of
+the record's position) is the same machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
 ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
 With `--claims docs/strangers.json` what was said is kept there, too, under the digits that end FOLDER's name.
 """
@@ -28,6 +28,8 @@ from bench.exam_claims import keep, seed_of
 from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
+from logs.roles import assign
+from logs.units import conversion
 from twin.model_units import in_units_of
 
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
@@ -67,7 +69,7 @@ def _unseen(folder: Path, out: Path, case: str) -> dict[str, float] | None:
     record, truth, design = folder / "unseen" / f"{case}.csv", folder / "unseen" / f"{case}.npz", folder / "design.toml"
     if not (record.exists() and truth.exists() and design.exists() and (out / "model.toml").exists()):
         return None
-    reading_in = np.load(truth)["x_analog"]
+    reading_in = np.load(truth)["x_analog"] * _unit_in(record)
     analogue = out / "analogue.toml"
     save_design(_analogue(load_design(out / "model.toml")), analogue)
     models = {"before_in": design, "after_in": analogue}
@@ -78,6 +80,14 @@ def _unseen(folder: Path, out: Path, case: str) -> dict[str, float] | None:
             f"{case}: the unseen record cannot be simulated: {error.stderr.strip()[-400:]}", file=sys.stderr, flush=True
         )
         return None
+
+
+def _unit_in(record: Path) -> float:
+    """What the unit of a record's position is [in]."""
+    with record.open(encoding="utf-8") as file:
+        headers = file.readline().strip().split(",")
+    position = assign(headers, {}, str(record))["position"]
+    return conversion(position.unit or "in", "position").scale
 
 
 def _analogue(model: DesignModel) -> DesignModel:

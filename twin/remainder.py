@@ -18,6 +18,8 @@ SLIGHT = 1.3
 #: of the converter for which the measured pressure speaks, and a single law of few numbers by which all of the record
 #: is explained to its noise: it may have been fitted without the only block in which it shows.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
+#: Of what re-tuned numbers leave of the squares, beyond which a cause that leaves something clear explains nothing.
+NUMBERS_DO = 0.8
 
 
 def leaves_too_much(
@@ -49,3 +51,14 @@ def leaves_too_much(
     plain = exact and len(causes) == 1 and len(causes[0].parameters) <= FREE
     share = (ERRATIC if erratic or told or plain else LEFT) * (0.5 if several or many else 1.0)
     return left > share * gap
+
+
+def no_better_than_numbers(retuned: float, after: float, floor: float, causes: Sequence[Cause], told: bool) -> bool:
+    """Whether causes leave much, and nearly all that other numbers leave without them; errors as above.
+
+    Not asked of an erratic cause, whose path no model follows for long, nor where the pressure has `told` them.
+    """
+    known = effects()
+    if told or any(c.name in known and known[c.name].erratic for c in causes):
+        return False
+    return after > CLEAR * floor and after**2 - floor**2 > NUMBERS_DO * (retuned**2 - floor**2)

@@ -13,7 +13,7 @@ from twin.choose.trim import doubtful
 from twin.closure import rms
 from twin.diagnosis import Cause, Verdict
 from twin.gap import GapParts, retuning_pays
-from twin.remainder import CLEAR, FREE, SLIGHT, leaves_too_much
+from twin.remainder import CLEAR, FREE, SLIGHT, leaves_too_much, no_better_than_numbers
 from twin.sensing import Sensing
 from twin.stages import StageResult
 from twin.verdict import Judgement, verdict_of
@@ -60,16 +60,25 @@ def upheld(
     if sensing.accepted:
         return _seen(parts, judgement, floor, sensing, shown)
     # what the pressure shows need not reach the stem, unless that is clearly off
-    told = before <= CLEAR * floor and {c.name for c in judgement.causes} <= set(shown)
+    told = before <= CLEAR * floor and _all_in(judgement, shown)
     vain = (after > NO_BETTER * before and not told) or (swings and not exact) or doubted(judgement, exact)
     trace = exact and _follows_commands(judgement.causes) and after**2 - floor**2 < TRACE * (before**2 - floor**2)
     # how much an unmeasured pressure wandered by itself nobody knows, but no law of the commands predicts that
     if before <= (HARDLY if apart or trace else SLIGHT) * floor or (vain and before < SLIGHT * floor):
         left = _named_only(judgement, shown)
         return (parts, left) if left.causes and not doubted(left, exact) else nothing(parts, judgement, disturbed)
-    errors = parts.driven or (before, after)
-    vain = vain or leaves_too_much(*errors, wandering**0.5 * floor, judgement.causes, apart, exact, shown)
+    vain = vain or _leaves_too_much(parts, wandering**0.5 * floor, judgement, apart, exact, shown)
     return _unexplained(parts, judgement) if vain else (parts, judgement)
+
+
+def _leaves_too_much(
+    parts: GapParts, floor: float, judgement: Judgement, apart: bool, exact: bool, shown: Collection[str]
+) -> bool:
+    before, after = rms(parts.before), rms(parts.after)
+    errors = parts.driven or (before, after)
+    if leaves_too_much(*errors, floor, judgement.causes, apart, exact, shown):
+        return True
+    return no_better_than_numbers(rms(parts.retuned), after, floor, judgement.causes, _all_in(judgement, shown))
 
 
 def _seen(
@@ -85,6 +94,10 @@ def _seen(
 def _coarse(floor: float, step: float) -> float:
     """Error beyond which steps of a reading are not all that is wrong: more than noise and rounding leave."""
     return float(np.hypot(DOUBTFUL * floor, 0.5 * step))
+
+
+def _all_in(judgement: Judgement, names: Collection[str]) -> bool:
+    return {c.name for c in judgement.causes} <= set(names)
 
 
 def _follows_commands(causes: Collection[Cause]) -> bool:
