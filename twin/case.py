@@ -137,7 +137,7 @@ def _trial(
     base: Plant, recording: Recording, bad: npt.NDArray[np.bool_] | None, held: bool, steps: Coarse | None
 ) -> Trial:
     step_s = fine_step_s(base.design, recording)
-    begun = beginning(base, recording, make_grid(recording.time_s, step_s), steps)
+    begun = beginning(base, recording, make_grid(recording.time_s, step_s, recording.command), steps)
     return make_trial(recording, step_s, bad, begun, freshness(recording) if held else None)
 
 

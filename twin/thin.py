@@ -164,7 +164,7 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     thin = thinned(recording, rows)
     false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
-    begun = beginning(case.base, thin, make_grid(thin.time_s, step_s), case.coarse)
+    begun = beginning(case.base, thin, make_grid(thin.time_s, step_s, thin.command), case.coarse)
     trial = make_trial(thin, step_s, false, begun, _fresh_of(whole, span, rows), vague)
     trial = replace(trial, place=_later(whole, span.start))
     return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)

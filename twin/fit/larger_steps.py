@@ -18,7 +18,7 @@ from twin.fit.least_squares import jacobian
 from twin.fit.space import Space
 from twin.fit.trial import Trial
 from twin.rows import Rows, kept_rows, thinned
-from twin.timegrid import TimeGrid, make_grid
+from twin.timegrid import QUICK, TimeGrid, make_grid
 
 #: Steps are so many times larger at the most, as long as there are about so many left.
 LARGER = 5.0
@@ -68,7 +68,7 @@ def in_larger_steps(channel: Channel, larger: float = LARGER, least: int = LEAST
 
 
 def _per_row(trial: Trial) -> float:
-    return (trial.grid.n_fine - 1) / max(trial.recording.n - 1, 1)
+    return float(np.mean(np.diff(trial.grid.time_s)) / trial.grid.typical_s)
 
 
 def _kept(trial: Trial, factor: float) -> Rows:
@@ -80,7 +80,8 @@ def _in_steps(trial: Trial, rows: Rows, factor: float) -> Trial:
     """The trial at some of its rows, in longer steps."""
     few = thinned(trial.recording, rows)
     per_row = max(1, round(_per_row(trial) / factor))
-    grid = make_grid(few.time_s, 1.01 * float(np.median(np.diff(few.time_s))) / per_row)
+    step_s, quick_s = 1.01 * float(np.median(np.diff(few.time_s))) / per_row, QUICK * trial.grid.typical_s
+    grid = make_grid(few.time_s, step_s, few.command, quick_s)
     return replace(
         trial,
         recording=few,

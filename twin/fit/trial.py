@@ -76,7 +76,7 @@ def make_trial(
     the recording itself, unless its rows are some of another's.
     """
     begun = begun or Begun()
-    grid = make_grid(recording.time_s, step_s)
+    grid = make_grid(recording.time_s, step_s, recording.command)
     known = np.isfinite(recording.position)
     false = np.zeros_like(known) if bad_rows is None else known & bad_rows
     vague = after_unseen_steps(recording) if vague is None else vague
