@@ -128,6 +128,29 @@ def test_false_readings_in_a_motion_are_found(step: float) -> None:
     assert np.flatnonzero(find_dropouts(position, SIGMA).rows).tolist() == rows
 
 
+@pytest.mark.parametrize("plain", [3, 0])
+def test_small_ones_beside_fast_steps_are_found_where_there_are_false_readings_beyond_doubt(plain: int) -> None:
+    """By less than two steps out: no further away than the readings around them, but beside their way."""
+    way = np.concatenate(
+        [np.zeros(60), 10.0 * np.arange(1, 61.0), np.full(60, 600.0), 600.0 - 8.0 * np.arange(1, 61.0)]
+    )
+    position = SIGMA * (way + np.random.default_rng(4).standard_normal(way.size))
+    sure, small = [20, 140, 150][:plain], [80, 95, 200]
+    position[sure] += 100.0 * SIGMA
+    position[small] += SIGMA * np.array([17.0, -18.0, 16.0])
+    assert np.flatnonzero(find_dropouts(position, SIGMA).rows).tolist() == sorted([*sure, *(small if plain else [])])
+
+
+def test_corners_of_motion_are_no_false_readings_where_there_are_some() -> None:
+    command = np.tile([12.5] * 25 + [4.0] * 25, 30).astype(float)
+    moving = record(Toy(tau_s=0.5, rate=1.0), command, DT, 3, SIGMA)
+    assert moving.pressure is not None
+    for reading, sigma in ((moving.position, SIGMA), (moving.pressure, 0.02)):
+        false = np.arange(215, reading.size, 300)
+        found = find_dropouts(np.where(np.isin(np.arange(reading.size), false), reading + 50.0, reading), sigma)
+        assert np.flatnonzero(found.rows).tolist() == false.tolist()
+
+
 def test_a_jump_that_stays_is_no_dropout() -> None:
     position = np.where(np.arange(500) < 250, 0.1, 0.3) + SIGMA * np.random.default_rng(0).standard_normal(500)
     assert not find_dropouts(position, SIGMA).rows.any()

@@ -26,6 +26,10 @@ SIGMAS = 6.0
 _LONGEST = 3
 _JUMP = 5.0  # times the usual step from reading to reading around it
 _WINDOW = 9
+#: False readings that prove that there are some; and by how much further one has to be beside its way than any step
+#: around it, or than its neighbours are beside theirs: the tip of a motion is no further beside than such a step.
+_PROVEN, _FURTHER, _SHARPER = 3, 1.25, 1.5
+_AROUND = 4
 _FALSE_RATE = 1e-7  # per row, of a Gaussian reading beyond six sigma that also comes back
 
 
@@ -58,6 +62,8 @@ def find_dropouts(reading: FloatArray, noise_sigma: float, effect: str = "sensor
     reach = bound + 2.0 * median_filter(steps, 2 * _WINDOW + 1, mode="mirror")
     false = _isolated(y, np.abs(apart) > reach, bound)
     near = false | _isolated(y, np.abs(apart) > NEAR * reach, bound, NEAR)
+    if np.count_nonzero(false) >= _PROVEN:
+        false |= _beside_their_way(y, bound)
     rows[known] = false
     count, sizes = int(false.sum()), np.abs(apart[false])
     tail = Tail(int(near.sum()), np.maximum(sizes / reach[false], 1.0))
@@ -101,6 +107,26 @@ def _isolated(y: FloatArray, far: BoolArray, bound: float, share: float = 1.0) -
     for start, stop in zip(starts[good], stops[good], strict=True):
         marked[start:stop] = True
     return marked
+
+
+def _beside_their_way(y: FloatArray, bound: float) -> BoolArray:
+    """Single readings of a motion that lie beside the line between their neighbours, by more than a motion can.
+
+    What is small beside the steps of a fast stem jumps neither away nor back by much more than these. This is asked
+    only where there are false readings beyond doubt: a corner of a motion is no evidence for them.
+    """
+    padded = np.pad(y, 1, mode="edge")
+    away, back = y - padded[:-2], y - padded[2:]
+    beside = np.abs(0.5 * (away + back))
+    steps = np.pad(np.abs(np.diff(y)), _AROUND, mode="constant")
+    windows = np.lib.stride_tricks.sliding_window_view(steps, 2 * _AROUND)
+    around = np.delete(windows, [_AROUND - 1, _AROUND], axis=1).max(axis=1)
+    neighbours = np.maximum(np.pad(beside, 1)[:-2], np.pad(beside, 1)[2:])
+    far = beside > np.maximum(np.sqrt(1.5) * bound, _FURTHER * around)
+    both = (away * back > 0.0) & (np.minimum(np.abs(away), np.abs(back)) > 0.5 * bound)
+    found = far & both & (beside > _SHARPER * neighbours)
+    found[[0, -1]] = False
+    return np.asarray(found)
 
 
 def _codes(values: FloatArray) -> tuple[float, ...]:
