@@ -57,6 +57,16 @@ _BURR = replace(
     _height("extra pressure at the centre, needed in one direction only"), lower=0.0, starts=(0.04, 0.25, 0.8)
 )
 
+_TIGHT_FROM = replace(_IN_BAND, doc="extra half deadband of the closed end")
+_FROM = replace(_BAND_AT, name="from_here", doc="where half of it is there, as a fraction of the travel")
+_EASED = replace(
+    WIDTH,
+    name="edge",
+    upper=0.6,
+    starts=(0.06, 0.2),
+    doc="over how much of the travel it comes, as a fraction",
+)
+
 _MID = _height("extra half deadband at mid travel against the ends, 1.5 times")
 _OPEN, _CLOSED = (_height(f"extra half deadband at fully {end}") for end in ("open", "closed"))
 
@@ -76,6 +86,10 @@ def _spot(c: Coefficients, values: Sequence[float]) -> None:
 def _band(c: Coefficients, values: Sequence[float]) -> None:
     height, centre, width = values
     _widen(c, height * (edge(c.xi, centre - 0.5 * width, _EDGE) - edge(c.xi, centre + 0.5 * width, _EDGE)))
+
+
+def _from_a_place_on(c: Coefficients, values: Sequence[float]) -> None:
+    _widen(c, values[0] * edge(c.xi, values[1], values[2]))
 
 
 def _grip(c: Coefficients, shape: FloatArray) -> None:
@@ -134,12 +148,14 @@ EFFECT = Effect(
     stage="actuator",
     claim="The deadband is wider or narrower locally, at some positions.",
     equations="closing p = a1 + w/k + e(w), opening p = a2 + w/k - e(w), e = height * bell((w/travel - centre)/width), "
-    "or height within a band of that width, or straight between points of the travel; stem_*: e of the stem x; "
+    "or height within a band of that width, or from a place on, or straight between points of the travel; stem_*: e of "
+    "the stem x; "
     "closing_spot, opening_spot: e on one of the two curves",
     source="Armstrong-Helouvry, Control of Machines with Friction (Kluwer 1991)",
     forms=(
         Form("spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _spot),
         Form("band", (_IN_BAND, _BAND_AT, _ACROSS), _band),
+        Form("from_a_place_on", (_TIGHT_FROM, _FROM, _EASED), _from_a_place_on),
         Form("stem_spot", (_height("extra half deadband at the centre"), CENTRE, WIDTH), _stem_spot),
         Form("closing_spot", (_BURR, CENTRE, WIDTH), _closing_spot),
         Form("opening_spot", (_BURR, CENTRE, WIDTH), _opening_spot),
