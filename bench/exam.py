@@ -3,8 +3,9 @@
 The folder holds `design.toml` (or none), `caseNN/*.csv` (the recordings of one machine each) and `SEALED.json`: for
 each case, by themselves or all under `cases`, `cls` (healthy, number, single, pair, outsider) and `truth`, its causes.
 `unseen/caseNN.csv` with `unseen/caseNN.npz` (`x_analog`: what the gauge would have read without noise, in the unit of
-the record's position) is the same machine on a record that the diagnosis is never shown. The program is called as anybody calls it; every answer stays in
-ANSWERS, and a run that was stopped goes on where it was. The labels are opened when the last answer is written.
+the record's position) is the same machine on a record that the diagnosis is never shown. The program is called as
+anybody calls it; every answer stays in ANSWERS, and a run that was stopped goes on where it was. The labels are opened
+when the last answer is written.
 With `--claims docs/strangers.json` what was said is kept there, too, under the digits that end FOLDER's name.
 """
 
@@ -28,7 +29,7 @@ from bench.exam_claims import keep, seed_of
 from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
-from logs.roles import assign
+from logs.roles import split_header
 from logs.units import conversion
 from twin.model_units import in_units_of
 
@@ -83,11 +84,12 @@ def _unseen(folder: Path, out: Path, case: str) -> dict[str, float] | None:
 
 
 def _unit_in(record: Path) -> float:
-    """What the unit of a record's position is [in]."""
+    """What the unit of a record's position is [in]; where it says none, an inch."""
     with record.open(encoding="utf-8") as file:
         headers = file.readline().strip().split(",")
-    position = assign(headers, {}, str(record))["position"]
-    return conversion(position.unit or "in", "position").scale
+    columns = [split_header(header, "position") for header in headers]
+    unit = next((column.unit for column in columns if column.label == "position"), "")
+    return conversion(unit or "in", "position").scale
 
 
 def _analogue(model: DesignModel) -> DesignModel:

@@ -192,3 +192,10 @@ def test_an_unseen_record_that_cannot_be_simulated_is_told_and_has_no_closure(tm
     unseen(tmp_path, out, DesignModel()).write_text("time_s,position_in\n0.0,0.1\n", encoding="utf-8")
     assert exam._unseen(tmp_path, out, "case01") is None
     assert "case01: the unseen record cannot be simulated" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("header", "inch"), [("position_mm", 25.4), ("position_in", 1.0), ("position", 1.0)])
+def test_an_unseen_reading_is_in_the_unit_of_its_record(tmp_path: Path, header: str, inch: float) -> None:
+    record = tmp_path / "case01.csv"
+    record.write_text(f"time_s,command_psi,{header}\n0,3,0\n", encoding="utf-8")
+    assert exam._unit_in(record) * inch == pytest.approx(1.0)
