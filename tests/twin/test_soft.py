@@ -102,22 +102,16 @@ def test_a_stem_at_rest_stands_where_the_pressure_has_it_and_its_core_behind(
 
 
 @pytest.mark.thorough
-def test_a_sleeve_in_the_play_is_a_lost_motion_alone() -> None:
-    trial, _ = trial_of(linkage("sleeve", 0.03, SHARE), np.append(staircase(), staircase(7)))
+@pytest.mark.parametrize(
+    ("form", "width", "parameter", "value", "near"),
+    [("soft", 0.04, "sooner", SOONER, 0.05), ("sleeve", 0.03, "share", SHARE, 0.03)],
+)
+def test_it_is_a_lost_motion_alone(form: str, width: float, parameter: str, value: float, near: float) -> None:
+    trial, _ = trial_of(linkage(form, width, value), np.append(staircase(), staircase(7)))
     noise = np.random.default_rng(5).normal(0.0, 0.004, trial.recording.n)
     pressure = np.asarray(trial.recording.pressure) + noise
     said = diagnose([replace(trial.recording, pressure=pressure)], DESIGN, (), UP_TO_TWO).diagnosis
-    assert [(cause.name, cause.form) for cause in said.causes] == [("linkage_lost_motion", "sleeve")]
-    assert said.causes[0].parameters["share"].value == pytest.approx(SHARE, abs=0.03)
-
-
-@pytest.mark.thorough
-def test_a_soft_linkage_is_a_lost_motion_alone() -> None:
-    trial, _ = trial_of(linkage("soft", 0.04, SOONER), np.append(staircase(), staircase(7)))
-    noise = np.random.default_rng(5).normal(0.0, 0.004, trial.recording.n)
-    pressure = np.asarray(trial.recording.pressure) + noise
-    said = diagnose([replace(trial.recording, pressure=pressure)], DESIGN, (), UP_TO_TWO).diagnosis
-    assert [(cause.name, cause.form) for cause in said.causes] == [("linkage_lost_motion", "soft")]
-    assert said.causes[0].parameters["play"].value == pytest.approx(0.04, abs=0.002)
-    assert said.causes[0].parameters["sooner"].value == pytest.approx(SOONER, abs=0.05)
+    assert [(cause.name, cause.form) for cause in said.causes] == [("linkage_lost_motion", form)]
+    assert said.causes[0].parameters["play"].value == pytest.approx(width, abs=0.002)
+    assert said.causes[0].parameters[parameter].value == pytest.approx(value, abs=near)
     assert said.gap.after is not None and said.gap.after < 1.1 * 100.0 * SIGMA / DESIGN.travel
