@@ -17,7 +17,7 @@ _LAGS, _LOOK_S, _ROWS = 5.0, 1.5, 5
 #: Share of the command's span that is a step.
 _STEP = 0.02
 #: What moves by a larger share of the deadband or of travel than this, and by more deviations of its noise.
-_PRESSURE, _STEM, _SURE = 0.05, 0.01, 6.0
+_PRESSURE, _STEM, _SURE = 0.05, 0.003, 6.0
 
 
 def under_way(design: DesignModel, recording: Recording) -> bool:

@@ -69,8 +69,18 @@ def test_a_valve_is_under_way_while_the_command_stands_still_and_something_moves
     assert (begun(record).unsure_s > 0.0) is moves
 
 
+@pytest.mark.parametrize(("left_of_travel", "moves"), [(0.006, True), (0.001, False)])
+def test_the_end_of_a_motion_counts_while_a_quiet_gauge_shows_it(left_of_travel: float, moves: bool) -> None:
+    """A stem 0.6 % of travel from where it comes to rest, with a lag of 2.7 s: as good as there to most eyes."""
+    time_s = 0.1 * np.arange(300)
+    chance = np.random.default_rng(2)
+    rest_in, to_go_in = 0.3, left_of_travel * DESIGN.travel / -np.expm1(-1.5 / DESIGN.tau_s)
+    position = rest_in + to_go_in * np.exp(-time_s / DESIGN.tau_s) + chance.normal(0.0, 3e-4 * DESIGN.travel, 300)
+    assert under_way(DESIGN, Recording("late", time_s, np.full(300, 8.0), position, np.full(300, 8.0))) is moves
+
+
 def test_false_readings_and_noise_move_nothing() -> None:
-    record = recorded(Plant(DESIGN), 100, pressure=True)
+    record = recorded(Plant(DESIGN), 290, pressure=True)
     assert record.pressure is not None
     position, pressure = record.position.copy(), record.pressure + np.random.default_rng(9).normal(0.0, 0.2, record.n)
     position[[0, 27]], position[4] = 0.0, np.nan
