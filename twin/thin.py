@@ -35,7 +35,7 @@ FEW_ROWS, NOT_MANY_ROWS = 6_000, 24_000
 MOST_S = 2_400.0
 #: A record up to so long is looked at whole, in coarse steps [s], where the noise (share of travel) hides what they
 #: miss; up to so many rows none is left out that comes no faster than these steps.
-COARSE_S, COARSE_STEP_S, COARSE_NOISE = 6_000.0, 0.1, 3e-4
+COARSE_S, COARSE_STEP_S, COARSE_NOISE = 6_000.0, 0.1, 4e-4
 COARSE_ROWS = 60_000
 #: Whatever the seconds, so few steps of simulation make no large record: a slow machine is read every ten seconds.
 MOST_STEPS = 60_000
@@ -127,7 +127,7 @@ def _spans(case: Case, all_of_it: bool) -> tuple[Span, ...]:
 
 
 def _hides_steps(case: Case) -> bool:
-    """Whether the noise hides the error of coarse steps, 0.006 % of travel RMS of full strokes."""
+    """Whether the noise hides the error of coarse steps, 0.02 % of travel RMS of full strokes."""
     return case.sigma_y > COARSE_NOISE * case.travel
 
 

@@ -27,7 +27,7 @@ def test_only_the_rate_limit_tells_them_apart(stem: str, pull: str) -> None:
     late = (0.2, 20.0)
     same = reading(free, ("creep", stem, late)) - reading(free, ("creep", pull, late))
     apart = reading(bound, ("creep", stem, late)) - reading(bound, ("creep", pull, late))
-    assert np.abs(same).max() < 1e-9
+    assert np.abs(same).max() < 1e-6  # they are exchanged within steps of one length only
     assert np.abs(apart).max() > 2e-3
     assert np.abs(reading(free, ("creep", pull, late)) - reading(free)).max() > 0.02
 

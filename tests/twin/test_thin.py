@@ -122,7 +122,7 @@ def test_a_noisy_record_is_looked_at_whole_in_coarse_steps(toy: Recording, monke
     seen = look(case, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9)
     assert len(seen.spans) == 1 and seen.recordings[0].duration_s == toy.duration_s
     assert seen.trials[0].grid.n_fine < 0.7 * case.trials[0].grid.n_fine
-    rather = replace(case, sigma_y=4e-4 * case.travel)
+    rather = replace(case, sigma_y=5e-4 * case.travel)
     assert len(look(rather, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9).spans) == 1
     quiet = replace(case, sigma_y=1e-5)
     assert len(look(quiet, monkeypatch, most_rows=toy.n - 1, most_s=200.0, coarse_s=1e9).spans) > 1
