@@ -16,6 +16,7 @@ from logs.recording import CommandTiming, DataNote, FloatArray, Recording
 from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pairs, split_header
 from logs.spoken import WRITTEN
 from logs.table import Table, read_table
+from logs.times import unwrap
 from logs.units import HOUSE_UNIT, PERCENT, conversion, plain_name
 
 if TYPE_CHECKING:
@@ -110,7 +111,7 @@ def _load_table(
         )
     columns = assign(table.headers, mapping, str(path))
     stated = {role: _unit(role, columns, units, table) for role in columns}
-    values, own = _values(table, columns, "time" in mapping)
+    values, own = _values(table, columns, "time" in mapping, stated["time"])
     signals = Signals(
         values=values,
         conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
@@ -125,11 +126,11 @@ def _load_table(
 
 
 def _values(
-    table: Table, columns: Mapping[Role, Column], one_time: bool
+    table: Table, columns: Mapping[Role, Column], one_time: bool, unit: str
 ) -> tuple[Mapping[Role, FloatArray], tuple[DataNote, ...]]:
     """The columns as numbers, in the rows of the position where each has times of its own and none is chosen for all.
 
-    Raises: `BadInput` where those are written in different ways.
+    `unit`: of the times. Raises: `BadInput` where those are written in different ways.
     """
     clock = {} if one_time else own_times.clocks(table.headers, columns)
     kinds = {(table.is_calendar(header), _written(own_times.clock(header), table)) for header in clock.values()}
@@ -138,12 +139,15 @@ def _values(
         raise BadInput(
             f"{table.where}: the times in {named} are not written alike; give them one unit, or map one time"
         )
-    times = {role: table.number(header, since_first=False) for role, header in clock.items()}
-    if not times or own_times.in_step(times):
+    raw = {role: table.number(header, since_first=False) for role, header in clock.items()}
+    if not raw or own_times.in_step(raw):
         return {role: table.number(column.header) for role, column in columns.items()}, ()
-    values = {role: table.number(columns[role].header) for role in times}
-    found = own_times.at_positions(values, times)
-    return found, (own_times.note(columns, found["time"].size),)
+    # each clock runs over, or passes midnight, in a row of its own
+    unit_s = conversion(unit, "time").scale
+    lifted = {role: unwrap(times, unit_s) for role, times in raw.items()}
+    values = {role: table.number(columns[role].header) for role in raw}
+    found = own_times.at_positions(values, {role: times for role, (times, _) in lifted.items()})
+    return found, (own_times.note(columns, found["time"].size), *lifted["position"][1])
 
 
 def _said_instead(table: Table, columns: Mapping[Role, Column]) -> Iterator[DataNote]:

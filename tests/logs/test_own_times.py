@@ -84,6 +84,22 @@ def test_times_that_go_alike_are_one_clock(tmp_path: Path) -> None:
     assert "times of its own" not in said(recording)
 
 
+def test_clocks_that_pass_midnight_do_so_each_in_its_row(tmp_path: Path) -> None:
+    rows = (
+        "23:59:57,3,23:59:58,0\n23:59:58,3,23:59:59,0\n00:00:00,5,00:00:00,0\n00:00:03,5,00:00:01,0.1\n,,00:00:02,0.2\n"
+    )
+    recording = load(tmp_path, "Time,command_psi,Time,position_in\n" + rows)
+    assert np.diff(recording.time_s).tolist() == [1.0] * 4
+    assert recording.command.tolist() == [3.0, 3.0, 3.0, 5.0, 5.0]
+    assert "the time counter ran over" in said(recording)
+
+
+def test_a_signal_without_any_time_is_refused_in_a_sentence(tmp_path: Path) -> None:
+    message = refusal(tmp_path, "Time,command_psi,Time,position_in\n,3,0,0\n,4,1,0.1\n")
+    assert "command" in message and "holds no number" in message
+    assert "usable time" in refusal(tmp_path, "Time,command_psi,Time,position_in\n,3,,0\n,4,,0.1\n")
+
+
 def test_one_time_that_is_chosen_is_that_of_all_rows(tmp_path: Path) -> None:
     rows = "0,3,0.5,0\n1,5,1.25,0\n2,5,2.5,0.1\n"
     recording = load(tmp_path, "Time,command_psi,Time,position_in\n" + rows, mapping="time=Time")

@@ -80,30 +80,34 @@ class Slips:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Pushes:
-    """How a valve was pushed at the times `time_s`: its smoothed pressure, and the rows at which that turns."""
+    """How a valve was pushed at the times `time_s`: its smoothed pressure, and the rows at which that turns.
+
+    `bell`: by which readings are smoothed, rows; `clear`: how far a tooth leaves the line at the least [position].
+    """
 
     time_s: FloatArray
     psi: FloatArray
     turned: list[int]
     bell: float
+    clear: float
     valve: Valve
 
 
 def pushes(time_s: FloatArray, pressure: FloatArray, valve: Valve) -> Pushes:
     """Those of a recording without gaps; both of shape (n,)."""
-    bell = max(_BELL_S / float(np.median(np.diff(time_s))), 1.0)
+    period_s = float(np.median(np.diff(time_s)))
+    bell = max(_BELL_S / period_s, 1.0)
     psi = gaussian_filter1d(pressure, bell, mode="nearest")
     turned = turns(psi, max(_TURNS * valve.sigma_p, _OF_DEADBAND * valve.deadband))
-    return Pushes(time_s, psi, turned, bell, valve)
+    clear = _CLEAR * valve.tau_s * speed_sigma(valve.sigma, period_s, bell, valve.memory)
+    return Pushes(time_s, psi, turned, bell, clear, valve)
 
 
 def teeth(pushed_by: Pushes, reading: FloatArray) -> Teeth:
     """The teeth of a reading, shape (n,), of a valve that was pushed so."""
-    time_s, psi, valve = pushed_by.time_s, pushed_by.psi, pushed_by.valve
+    time_s, psi, clear, valve = pushed_by.time_s, pushed_by.psi, pushed_by.clear, pushed_by.valve
     smooth = gaussian_filter1d(reading, pushed_by.bell, mode="nearest")
     going = smooth + valve.tau_s * np.gradient(smooth, time_s)
-    period_s = float(np.median(np.diff(time_s)))
-    clear = _CLEAR * valve.tau_s * speed_sigma(valve.sigma, period_s, pushed_by.bell, valve.memory)
     found: list[tuple[float, float, float]] = []
     for start, stop in pairwise(pushed_by.turned):
         way = 1.0 if psi[stop] > psi[start] else -1.0
