@@ -31,4 +31,4 @@ def test_it_is_found_in_every_part_of_the_travel(centre: float, height_psi: floa
     space = make_space(Plant(DESIGN), (cause,), channel.numbers, Scales())
     found = fit(channel, space, starts_of(space))
     assert found.mse < 1.2  # of 1,300 to 8,700 without
-    assert found.values()[-3:] == pytest.approx([height_psi, centre, 0.22], abs=0.02)
+    assert found.values()[-3:] == pytest.approx([height_psi, centre, 0.22], abs=0.03)

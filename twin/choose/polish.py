@@ -10,6 +10,7 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 from logs.recording import FloatArray
+from twin.effect import Form
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, evaluated, fit, starts_of
 
@@ -20,6 +21,8 @@ _ROUNDS, _TOLD_ROUNDS = 12, 8
 _SPREADS, _FARTHEST, _GENERATIONS = np.geomspace(0.5, 0.02, 24), 1.0, 20
 #: Error, noise = 1, below which there is nothing left to look for.
 _NOTHING = 1.02
+#: A place or a moment that is looked for at so many starts has valleys between them.
+_PLACES = 3
 
 
 def polished(channel: Channel, fits: Sequence[Fit], most: int, pool: Executor) -> list[Fit]:
@@ -35,7 +38,7 @@ def polished(channel: Channel, fits: Sequence[Fit], most: int, pool: Executor) -
 
 def _told(channel: Channel, one: Fit, best: Fit) -> Fit:
     """`one` fitted again from what `best` found for the causes that they share, where the response jumps."""
-    rough = {c.name for c in one.space.causes if c.form is not None and not all(p.smooth for p in c.form.parameters)}
+    rough = {c.name for c in one.space.causes if c.form is not None and _has_valleys(c.form)}
     if one is best or not rough & set(best.names):
         return one
     start = starts_of(one.space, [best, one])[0]
@@ -70,12 +73,16 @@ def _about(channel: Channel, one: Fit, pool: Executor) -> Fit:
     return min(one, fit(channel, one.space, [_moved(one, places, found.x)], rounds=_TOLD_ROUNDS), key=lambda f: f.mse)
 
 
+def _has_valleys(form: Form) -> bool:
+    return any(not p.smooth or (not p.size and len(p.starts) >= _PLACES) for p in form.parameters)
+
+
 def _rough_places(one: Fit) -> list[int]:
-    """Where in z the parameters stand of the forms to which the response jumps."""
+    """Where in z the parameters stand of the forms whose valleys are narrow."""
     at, places = len(one.space.numbers), list[int]()
     for cause in one.space.causes:
         parameters = cause.form.parameters if cause.form is not None else ()
-        if not all(p.smooth for p in parameters):
+        if cause.form is not None and _has_valleys(cause.form):
             places += range(at, at + len(parameters))
         at += len(parameters)
     return places

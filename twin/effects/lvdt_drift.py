@@ -94,7 +94,8 @@ _PERIOD = Parameter(
 _LOOKS = 48
 #: The stem's time constant in which a zero creeps, of a design that says it has none [s].
 _LEAST_S = 1e-3
-_STEP = replace(_CHANGE, name="zero", starts=(-0.005, 0.005), doc="by how much the zero jumps")
+# So small that the moment which leaves least is that of a jump of any size.
+_STEP = replace(_CHANGE, name="zero", starts=(-0.001, 0.001), doc="by how much the zero jumps")
 _WHEN = replace(
     WHEN,
     starts=tuple(0.02 + 0.96 * (0.5 + k) / _LOOKS for k in range(_LOOKS)),
@@ -183,7 +184,7 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
 
 def _instants(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """All along the first recording, up and down."""
-    size, whole_s = 0.005 * scales.position, records[0].duration_s
+    size, whole_s = 0.001 * scales.position, records[0].duration_s
     return [(zero, (0.5 + k) / _LOOKS * whole_s) for k in range(_LOOKS) for zero in (size, -size)]
 
 

@@ -11,8 +11,9 @@ import numpy as np
 
 from logs.recording import FloatArray, Recording
 from twin.fit.channel import Channel
+from twin.fit.contest import followed, ranked, rough_unknowns
 from twin.fit.larger_steps import Look
-from twin.fit.least_squares import Minimum, Residuals, descend, minimise
+from twin.fit.least_squares import Minimum, descend, minimise
 from twin.fit.space import Space, cause_starts
 from twin.plant import Plant
 
@@ -115,12 +116,14 @@ def fit(
         return np.concatenate([r if root is None else r * root, (z - centre) / spreads, *held])
 
     quick = look if look is not None and look.larger else None
-    ranked = _ranked(partial(quick.residuals, space) if quick else residuals, starts)
-    ranked = [*ranked[:refine], *_in_motion(channel, space, ranked, refine), *_slower(space, ranked, refine)]
-    rough = np.array([k for k, u in enumerate(space.unknowns) if not u.smooth], dtype=np.int64)
     about = partial(quick.slopes, space) if quick else None
+    compared = partial(quick.residuals, space) if quick else residuals
+    in_order = ranked(compared, starts)
+    first = followed(compared, space, in_order, refine)
+    others = [*_in_motion(channel, space, first, in_order[refine:]), *_slower(space, first, in_order[refine:])]
+    rough = rough_unknowns(space)
     minima = []
-    for start in ranked:
+    for start in [*first, *others]:
         z = descend(residuals, start, rough, space.lower, space.upper) if rough.size else start
         minima.append(minimise(residuals, z, space.lower, space.upper, space.steps, rounds, about))
     # what was looked for further off has to be better by more than noise makes a number that does not matter
@@ -135,33 +138,28 @@ def evaluated(channel: Channel, space: Space, z: FloatArray) -> Fit:
     return Fit(space, z, mse, float(np.sum((z / space.spreads) ** 2)), residuals, np.zeros((z.size, z.size)), 1)
 
 
-def _ranked(residuals: Residuals, starts: Sequence[FloatArray]) -> list[FloatArray]:
-    """The starts, best first; a single one needs no look."""
-    if len(starts) == 1:
-        return list(starts)
-    return [starts[i] for i in np.argsort([float(r @ r) for r in map(residuals, starts)])]
-
-
-def _in_motion(channel: Channel, space: Space, ranked: Sequence[FloatArray], refine: int) -> list[FloatArray]:
-    """The best start in which something moves, where it does in none of the best `refine`.
+def _in_motion(
+    channel: Channel, space: Space, first: Sequence[FloatArray], others: Sequence[FloatArray]
+) -> list[FloatArray]:
+    """The best of the `others` in which something moves, where it does in none of the `first`.
 
     A model that never moves may well be off by less than one that moves by too much, and no way leads on from there.
     """
-    if len(ranked) <= refine or not all(channel.stands(space.plant(z)) for z in ranked[:refine]):
+    if not others or not all(channel.stands(space.plant(z)) for z in first):
         return []
-    return list(islice((z for z in ranked[refine:] if not channel.stands(space.plant(z))), 1))
+    return list(islice((z for z in others if not channel.stands(space.plant(z))), 1))
 
 
-def _slower(space: Space, ranked: Sequence[FloatArray], refine: int) -> list[FloatArray]:
-    """The best start with a rate limit below the design's, where none of the best `refine` has one.
+def _slower(space: Space, first: Sequence[FloatArray], others: Sequence[FloatArray]) -> list[FloatArray]:
+    """The best of the `others` with a rate limit below the design's, where none of the `first` has one.
 
     A limit that is never met makes no difference, so that no way leads from there to one that is.
     """
     if "rate_limit" not in space.numbers:
         return []
     at = space.numbers.index("rate_limit")
-    lower = (z for z in ranked[refine:] if z[at] < 0.0)
-    return [] if any(z[at] < 0.0 for z in ranked[:refine]) else list(islice(lower, 1))
+    lower = (z for z in others if z[at] < 0.0)
+    return [] if any(z[at] < 0.0 for z in first) else list(islice(lower, 1))
 
 
 def _finished(channel: Channel, space: Space, best: Minimum, weights: FloatArray | None, used: int) -> Fit:
