@@ -116,7 +116,7 @@ def test_a_second_cause_stays_though_another_could_stand_in_its_place() -> None:
     against = conspiracy(other, decision.accepted, decision.findings.phi)  # the stop needs a compliance that is off
     assert against > 0.5
     told = np.exp((lead["reduced_travel"] - lead["lvdt_calibration"]) / Weights().temperature - against)
-    assert odds == pytest.approx(told, rel=0.1)
+    assert odds == pytest.approx(told, rel=0.2)
 
 
 def _pair(decision: Decision, *names: str) -> Fit:
