@@ -17,7 +17,7 @@ from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pair
 from logs.spoken import WRITTEN
 from logs.table import Table, read_table
 from logs.times import unwrap
-from logs.units import HOUSE_UNIT, PERCENT, conversion, plain_name
+from logs.units import HOUSE_UNIT, PERCENT, Conversion, conversion, plain_name
 
 if TYPE_CHECKING:
     from logs.run import Run
@@ -62,7 +62,7 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
         del columns["pressure"], stated["pressure"]
     signals = Signals(
         values={role: run.columns[column.header] for role, column in columns.items()},
-        conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
+        conversions=_conversions(columns, stated, where),
         headers={role: column.header for role, column in columns.items()},
         quality={name: run.columns[name] for name in names if name == "quality" or name.endswith("_quality")},
         notes=notes,
@@ -77,6 +77,17 @@ def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Reco
         "problems": run.problems,
     }
     return assemble(signals, name=run.name, where=where, command_timing=command_timing, meta=meta)
+
+
+def _conversions(columns: Mapping[Role, Column], stated: Mapping[Role, str], where: str) -> dict[Role, Conversion]:
+    """How each column becomes one in house units. Raises: `BadInput` with the file and the column."""
+    found = {}
+    for role, unit in stated.items():
+        try:
+            found[role] = conversion(unit, QUANTITY[role])
+        except BadInput as error:
+            raise BadInput(f"{where}: column '{columns[role].header}': {error}") from error
+    return found
 
 
 def _expired(start: Mapping[str, object]) -> tuple[DataNote, ...]:
@@ -111,10 +122,11 @@ def _load_table(
         )
     columns = assign(table.headers, mapping, str(path))
     stated = {role: _unit(role, columns, units, table) for role in columns}
-    values, own = _values(table, columns, "time" in mapping, stated["time"])
+    conversions = _conversions(columns, stated, str(path))
+    values, own = _values(table, columns, "time" in mapping, conversions["time"].scale)
     signals = Signals(
         values=values,
-        conversions={role: conversion(unit, QUANTITY[role]) for role, unit in stated.items()},
+        conversions=conversions,
         headers={role: column.header for role, column in columns.items()},
         unsaid=tuple(role for role, unit in stated.items() if not unit),
         notes=(*table.notes, *_said_instead(table, columns), *own),
@@ -126,11 +138,11 @@ def _load_table(
 
 
 def _values(
-    table: Table, columns: Mapping[Role, Column], one_time: bool, unit: str
+    table: Table, columns: Mapping[Role, Column], one_time: bool, unit_s: float
 ) -> tuple[Mapping[Role, FloatArray], tuple[DataNote, ...]]:
     """The columns as numbers, in the rows of the position where each has times of its own and none is chosen for all.
 
-    `unit`: of the times. Raises: `BadInput` where those are written in different ways.
+    `unit_s`: that of the times [s]. Raises: `BadInput` where those are written in different ways.
     """
     clock = {} if one_time else own_times.clocks(table.headers, columns)
     kinds = {(table.is_calendar(header), _written(own_times.clock(header), table)) for header in clock.values()}
@@ -143,7 +155,6 @@ def _values(
     if not raw or own_times.in_step(raw):
         return {role: table.number(column.header) for role, column in columns.items()}, ()
     # each clock runs over, or passes midnight, in a row of its own
-    unit_s = conversion(unit, "time").scale
     lifted = {role: unwrap(times, unit_s) for role, times in raw.items()}
     values = {role: table.number(columns[role].header) for role in raw}
     found = own_times.at_positions(values, {role: times for role, (times, _) in lifted.items()})

@@ -58,6 +58,13 @@ def test_names_and_units_from_the_command_line_win(tmp_path: Path) -> None:
     assert recording.target is not None and recording.target.tolist() == [51.0, 61.0, 61.0]
 
 
+def test_a_unit_that_nobody_knows_is_refused_with_its_file_and_column(tmp_path: Path) -> None:
+    text = "time_s,command (psi),position (furlongz)\n0,5,0.1\n1,5,0.1\n"
+    said_why = refusal(tmp_path, text)
+    assert "file.csv: column 'position (furlongz)': unit 'furlongz' is not a unit of position" in said_why
+    assert "column 'position (furlongz)': unit 's'" in refusal(tmp_path, text, units="position=s")
+
+
 def test_percent_of_everything(tmp_path: Path) -> None:
     recording = load(tmp_path, "time_s,command_%,pressure (%),position [percent]\n0,10,11,12\n1,20,21,22\n")
     assert recording.pressure_unit == recording.position_unit == "percent"
