@@ -150,10 +150,19 @@ def _valve(case: Case) -> Valve:
 
 
 def _better(decision: Decision, found: Fit) -> list[Fit]:
-    """The best hypotheses that do not slip and leave less all the same: a rough enough profile makes teeth, too."""
+    """The best hypotheses that do not slip and leave less all the same: a rough enough profile makes teeth, too.
+
+    Only laws, and only as many causes as are believed: three of them, or a free curve, follow any wild path a little.
+    Teeth that a rough profile makes are fixed in place, and have been left alone before.
+    """
     fits = (decision.findings.none, decision.findings.retuned, *decision.findings.fits)
-    calm = sorted((f for f in fits if not any(map(_slips_by, f.space.causes))), key=lambda f: f.mse)
+    believed = (f for f in fits if len(f.names) <= _BESIDE and not any(map(_free, f.space.causes)))
+    calm = sorted((f for f in believed if not any(map(_slips_by, f.space.causes))), key=lambda f: f.mse)
     return [f for f in calm[:_OTHERS] if f.mse < found.mse]
+
+
+def _free(cause: Cause) -> bool:
+    return cause.form is not None and cause.form.free
 
 
 def _slips_by(cause: Cause) -> bool:
