@@ -20,6 +20,7 @@ from logs.spoken import HOUSE, Spoken
 from twin.case import Case
 from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
+from twin.choose.reform import curved
 from twin.events.teeth import Pushes, Slips, Teeth, Valve, fixed_in_place, pushes, teeth, together
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, evaluated, fit
@@ -150,19 +151,18 @@ def _valve(case: Case) -> Valve:
 
 
 def _better(decision: Decision, found: Fit) -> list[Fit]:
-    """The best hypotheses that do not slip and leave less all the same: a rough enough profile makes teeth, too.
+    """The best laws that do not slip and leave less all the same.
 
-    Only laws, and only as many causes as are believed: three of them, or a free curve, follow any wild path a little.
-    Teeth that a rough profile makes are fixed in place, and have been left alone before.
+    A free curve, in place or in time, follows any wild path a little; teeth that are fixed in place have been left
+    alone before.
     """
     fits = (decision.findings.none, decision.findings.retuned, *decision.findings.fits)
-    believed = (f for f in fits if len(f.names) <= _BESIDE and not any(map(_free, f.space.causes)))
-    calm = sorted((f for f in believed if not any(map(_slips_by, f.space.causes))), key=lambda f: f.mse)
-    return [f for f in calm[:_OTHERS] if f.mse < found.mse]
+    laws = sorted((f for f in fits if not any(map(_slips_or_bends, f.space.causes))), key=lambda f: f.mse)
+    return [f for f in laws[:_OTHERS] if f.mse < found.mse]
 
 
-def _free(cause: Cause) -> bool:
-    return cause.form is not None and cause.form.free
+def _slips_or_bends(cause: Cause) -> bool:
+    return _slips_by(cause) or (cause.form is not None and curved(cause.form))
 
 
 def _slips_by(cause: Cause) -> bool:

@@ -10,9 +10,9 @@ import numpy as np
 from scipy.optimize import differential_evolution
 
 from logs.recording import FloatArray
-from twin.effect import Form
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, evaluated, fit, starts_of
+from twin.fit.space import Cause
 
 _ROUNDS, _TOLD_ROUNDS = 12, 8
 #: How far off the best found so far (standard deviation of their logarithm) a population first looks again at numbers
@@ -21,7 +21,7 @@ _ROUNDS, _TOLD_ROUNDS = 12, 8
 _SPREADS, _FARTHEST, _GENERATIONS = np.geomspace(0.5, 0.02, 24), 1.0, 20
 #: Error, noise = 1, below which there is nothing left to look for.
 _NOTHING = 1.02
-#: A place or a moment that is looked for at so many starts has valleys between them.
+#: A place or a period that is looked for at so many starts has valleys between them.
 _PLACES = 3
 
 
@@ -37,9 +37,9 @@ def polished(channel: Channel, fits: Sequence[Fit], most: int, pool: Executor) -
 
 
 def _told(channel: Channel, one: Fit, best: Fit) -> Fit:
-    """`one` fitted again from what `best` found for the causes that they share, where the response jumps."""
-    rough = {c.name for c in one.space.causes if c.form is not None and _has_valleys(c.form)}
-    if one is best or not rough & set(best.names):
+    """`one` fitted again from what `best` found for the causes that they share, where valleys are narrow."""
+    shared = {c.name for c in one.space.causes if _has_valleys(c)} & set(best.names)
+    if one is best or not shared:
         return one
     start = starts_of(one.space, [best, one])[0]
     count = len(one.space.numbers)
@@ -49,12 +49,12 @@ def _told(channel: Channel, one: Fit, best: Fit) -> Fit:
 
 
 def _about(channel: Channel, one: Fit, pool: Executor) -> Fit:
-    """`one`, or the fit from somewhere about it in the forms with which the response jumps, if that leaves less.
+    """`one`, or the fit from somewhere about it in the forms whose valleys are narrow, if that leaves less.
 
     By differential evolution: narrow valleys side by side have no slope that leads from one to the next.
     Source: Storn, Price, Journal of Global Optimization 11 (1997) 341.
     """
-    places = _rough_places(one)
+    places = _narrow_places(one)
     if not places or one.mse < _NOTHING:
         return one
     first = _SPREADS[:, None] * np.random.default_rng(0).standard_normal((_SPREADS.size, len(places)))
@@ -73,18 +73,20 @@ def _about(channel: Channel, one: Fit, pool: Executor) -> Fit:
     return min(one, fit(channel, one.space, [_moved(one, places, found.x)], rounds=_TOLD_ROUNDS), key=lambda f: f.mse)
 
 
-def _has_valleys(form: Form) -> bool:
-    return any(not p.smooth or (not p.size and len(p.starts) >= _PLACES) for p in form.parameters)
+def _has_valleys(cause: Cause) -> bool:
+    """Whether the form is one whose response jumps, or that is looked for at several places."""
+    parameters = cause.form.parameters if cause.form is not None else ()
+    return any(not p.smooth or (not p.size and len(p.starts) >= _PLACES) for p in parameters)
 
 
-def _rough_places(one: Fit) -> list[int]:
+def _narrow_places(one: Fit) -> list[int]:
     """Where in z the parameters stand of the forms whose valleys are narrow."""
     at, places = len(one.space.numbers), list[int]()
     for cause in one.space.causes:
-        parameters = cause.form.parameters if cause.form is not None else ()
-        if cause.form is not None and _has_valleys(cause.form):
-            places += range(at, at + len(parameters))
-        at += len(parameters)
+        count = len(cause.form.parameters) if cause.form is not None else 0
+        if _has_valleys(cause):
+            places += range(at, at + count)
+        at += count
     return places
 
 

@@ -56,10 +56,10 @@ def lays_open(larger: Fit, one: Fit) -> bool:
 
 def _hiding(causes: Sequence[Cause]) -> list[tuple[Cause, tuple[str, ...]]]:
     """Those of the causes that are curves, with the effects that they hide."""
-    return [(c, c.effect.hides) for c in causes if c.effect and c.form and _curved(c.form) and not c.form.outside]
+    return [(c, c.effect.hides) for c in causes if c.effect and c.form and curved(c.form) and not c.form.outside]
 
 
-def _curved(form: Form) -> bool:
+def curved(form: Form) -> bool:
     """Whether a form is no law, but a free curve, or one of each recording's own."""
     return form.free or form.apart > 0
 

@@ -94,8 +94,9 @@ _PERIOD = Parameter(
 _LOOKS = 48
 #: The stem's time constant in which a zero creeps, of a design that says it has none [s].
 _LEAST_S = 1e-3
-# So small that the moment which leaves least is that of a jump of any size.
-_STEP = replace(_CHANGE, name="zero", starts=(-0.001, 0.001), doc="by how much the zero jumps")
+#: Jump [in] that is looked for: so small that the moment which leaves least is that of a jump of any size.
+_JUMP = 0.001
+_STEP = replace(_CHANGE, name="zero", starts=(-_JUMP, _JUMP), doc="by how much the zero jumps")
 _WHEN = replace(
     WHEN,
     starts=tuple(0.02 + 0.96 * (0.5 + k) / _LOOKS for k in range(_LOOKS)),
@@ -184,7 +185,7 @@ def _jump_each(c: Coefficients, values: Sequence[float]) -> None:
 
 def _instants(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """All along the first recording, up and down."""
-    size, whole_s = 0.001 * scales.position, records[0].duration_s
+    size, whole_s = _JUMP * scales.position, records[0].duration_s
     return [(zero, (0.5 + k) / _LOOKS * whole_s) for k in range(_LOOKS) for zero in (size, -size)]
 
 
