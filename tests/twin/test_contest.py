@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,8 @@ from tests.twin.judged import a_record
 from tests.twin.loops import D
 from twin.case import make_case
 from twin.catalog import effect
-from twin.fit.channel import position_channel
+from twin.choose.polish import polished
+from twin.fit.channel import Channel, position_channel
 from twin.fit.contest import followed
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.larger_steps import in_larger_steps
@@ -20,13 +23,18 @@ from twin.stages import driven_about
 
 def found(name: str, form: str, truth: tuple[float, ...], seed: int) -> Fit:
     """The true form fitted from its own starts to five minutes of random steps, as the search does."""
+    return searched(name, form, truth, seed)[1]
+
+
+def searched(name: str, form: str, truth: tuple[float, ...], seed: int) -> tuple[Channel, Fit]:
+    """Likewise, with what it was fitted to."""
     cause = Cause(name, effect(name), effect(name).form(form))
     record = a_record(Plant(D, (Inserted(name, effect(name).form(form), truth),)), seed=seed)
     case = make_case([record], D)
     channel = position_channel(driven_about(case.base, case), case.sigma_y)
     space = make_space(case.base, (cause,), channel.numbers, case.scales)
     starts = starts_of(space, [], [record])
-    return fit(channel, space, starts, rounds=12, look=in_larger_steps(channel))
+    return channel, fit(channel, space, starts, rounds=12, look=in_larger_steps(channel))
 
 
 @pytest.mark.parametrize(
@@ -46,6 +54,16 @@ def test_a_form_with_a_place_or_a_moment_is_found_there(
     fitted = found(name, form, truth, seed)
     assert fitted.mse < 1.2
     assert fitted.values()[-len(truth) :] == pytest.approx(truth, rel=0.05)
+
+
+def test_a_band_that_no_start_led_to_is_found_about_where_the_best_ended() -> None:
+    """Its response is smooth, and its valleys are narrow all the same."""
+    channel, beside = searched("position_dependent_friction", "band", (0.538, 0.404, 0.097), 4)
+    assert beside.mse > 100.0
+    with ThreadPoolExecutor(2) as pool:
+        (better,) = polished(channel, [beside], 1, pool)
+    assert better.mse < 3.0  # it ends a little beside it
+    assert better.values()[-2] == pytest.approx(0.404, abs=0.03)
 
 
 @pytest.mark.thorough
