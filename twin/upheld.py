@@ -64,7 +64,10 @@ def upheld(
     vain = (after > NO_BETTER * before and not told) or (swings and not exact) or doubted(judgement, exact)
     trace = exact and _follows_commands(judgement.causes) and after**2 - floor**2 < TRACE * (before**2 - floor**2)
     # how much an unmeasured pressure wandered by itself nobody knows, but no law of the commands predicts that
-    if before <= (HARDLY if apart or trace else SLIGHT) * floor or (vain and before < SLIGHT * floor):
+    # ... and of a slight gap any of a dozen causes that are as good is no answer
+    if before <= (HARDLY if apart or trace else SLIGHT) * floor or (
+        before < SLIGHT * floor and (vain or doubted(replace(judgement, alike={}), exact))
+    ):
         left = _named_only(judgement, shown)
         return (parts, left) if left.causes and not doubted(left, exact) else nothing(parts, judgement, disturbed)
     vain = vain or _leaves_too_much(parts, wandering**0.5 * floor, judgement, apart, exact, shown)

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
+
+#: Of the squares that are left without a cause, what its hypothesis may leave, and another predict otherwise, at the
+#: most, where more than the noise is left.
+_HARDLY = 0.004
 
 
 def alike(decision: Decision, name: str) -> tuple[str, ...]:
@@ -12,12 +18,16 @@ def alike(decision: Decision, name: str) -> tuple[str, ...]:
 
     A stop that is not where it should be looks like a wrong zero where the other stop is never reached. Between such
     causes neither may be likely, while one of them is sure. Only of what is explained to its noise: what a hypothesis
-    leaves beyond it, another may leave as well. Shape of the answer: names, the likeliest first, without `name`.
+    leaves beyond it, another may leave as well. But where several leave a sixteenth of a large gap, and the same
+    sixteenth or another, that gap is what each of them does, be the rest whose it may. Shape of the answer: names,
+    the likeliest first, without `name`.
     """
-    if not decision.exact or name not in decision.names:
+    if name not in decision.names:
         return ()
     others = set(decision.names) - {name}
-    near = [f for f in decision.findings.fits if _in_place(f, others, name) and hidden(decision, f)]
+    slack = _slack(decision, others)
+    near = [f for f in decision.findings.fits if _in_place(f, others, name)]
+    near = [f for f in near if (decision.exact and hidden(decision, f)) or _apart(decision, f) < slack]
     near = sorted(near, key=decision.findings.score, reverse=True)
     return tuple(dict.fromkeys(next(iter(set(f.names) - others)) for f in near))
 
@@ -30,6 +40,18 @@ def hidden(decision: Decision, fit: Fit) -> bool:
     """
     apart = fit.residuals - decision.accepted.residuals
     return 0.5 * float(apart @ apart) / decision.findings.phi < DecisionRules().evidence
+
+
+def _slack(decision: Decision, others: set[str]) -> float:
+    """How far apart predictions may be that do the same, as a mean square, noise = 1; 0 where too much is left."""
+    fits = [f for f in decision.findings.fits if set(f.names) == others] if others else [decision.findings.none]
+    gap = min((f.mse for f in fits), default=0.0) - decision.floor
+    return _HARDLY * gap if decision.accepted.mse - decision.floor < _HARDLY * gap else 0.0
+
+
+def _apart(decision: Decision, fit: Fit) -> float:
+    """Mean square of what `fit` predicts otherwise than the accepted hypothesis, noise = 1."""
+    return float(np.mean((fit.residuals - decision.accepted.residuals) ** 2))
 
 
 def _in_place(fit: Fit, others: set[str], name: str) -> bool:
