@@ -132,6 +132,14 @@ SAME = {
         PlainValve(breaks_s=29.95, takes=-0.6, stiffens=0.2),
     ),
     "flow_at_stem": (plant_with("flow_force", "stem_square", 0.4), PlainValve(push=lambda x: 0.4 * (x / TRAVEL) ** 2)),
+    "flow_drop": (
+        plant_with("flow_force", "stem_drop", 0.4, 0.3),
+        PlainValve(push=lambda x: 0.4 / (1.0 + ((1.0 - x / TRAVEL) / 0.3) ** 2)),
+    ),
+    "flow_jet": (
+        plant_with("flow_force", "stem_jet", 0.4, 0.25),
+        PlainValve(push=lambda x: 1.6 * (1.0 - x / TRAVEL) * float(np.exp(1.0 - (1.0 - x / TRAVEL) / 0.25))),
+    ),
     "flow_hump": (plant_with("flow_force", "stem_hump", 0.4), PlainValve(push=bow)),
     "flow_peak": (plant_with("flow_force", "stem_peak", 0.4, 1.0), PlainValve(push=peak)),
     "peak": (plant_with("flow_force", "peak", 0.4, 1.0), PlainValve(bend=peak)),

@@ -41,6 +41,30 @@ _WITHIN = Parameter(
 )
 
 
+_HALVED = Parameter(
+    name="halved",
+    kind="fraction",
+    lower=0.05,
+    upper=1.5,
+    starts=(0.2, 0.5),
+    scale=0.2,
+    doc="opening at which the line has as much of the pressure drop as the plug",
+    neutral=0.3,
+    size=False,
+)
+
+_AT = Parameter(
+    name="at",
+    kind="fraction",
+    lower=0.03,
+    upper=0.8,
+    starts=(PEAK, 0.35),
+    scale=0.1,
+    doc="opening at which the force peaks",
+    neutral=PEAK,
+    size=False,
+)
+
 _SKEW = Parameter(
     name="skew",
     kind="fraction",
@@ -67,9 +91,30 @@ def _throttling(c: Coefficients, values: Sequence[float]) -> None:
     _push(c, values[0] * np.square(c.xi))
 
 
-def _near_seat(c: Coefficients, values: Sequence[float]) -> None:
-    opening = (1.0 - c.xi) / PEAK
-    _push(c, values[0] * opening * np.exp(1.0 - opening))
+def _of_jet(c: Coefficients, values: Sequence[float]) -> FloatArray:
+    opening = (1.0 - c.xi) / values[1]
+    return values[0] * opening * np.exp(1.0 - opening)
+
+
+def _jet(c: Coefficients, values: Sequence[float]) -> None:
+    _push(c, _of_jet(c, values))
+
+
+def _stem_jet(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, _of_jet(c, values))
+
+
+def _of_drop(c: Coefficients, values: Sequence[float]) -> FloatArray:
+    # A plug and a line in series share the pressure as the inverse squares of what they let through.
+    return values[0] / (1.0 + np.square((1.0 - c.xi) / values[1]))
+
+
+def _drop(c: Coefficients, values: Sequence[float]) -> None:
+    _push(c, _of_drop(c, values))
+
+
+def _stem_drop(c: Coefficients, values: Sequence[float]) -> None:
+    _push_stem(c, _of_drop(c, values))
 
 
 def _push_stem(c: Coefficients, shape: FloatArray) -> None:
@@ -129,13 +174,14 @@ EFFECT = Effect(
     stage="actuator",
     claim="Fluid through the valve pushes the plug, depending on opening.",
     equations="closing p = a1 + w/k + f(w), opening p = a2 + w/k + f(w); f = force * shape(opening) less its line; "
-    "shape: (1 - opening)^2, or 4 opening (1 - opening) (hump), or a peak at 12 % opening, or exp(-opening/0.12), "
-    "suction: exp(-opening/within), "
+    "shape: (1 - opening)^2, or 4 opening (1 - opening) (hump), or exp(-opening/0.12) (at_seat, stem_seat), "
+    "suction: exp(-opening/within), jet: o/at exp(1 - o/at), drop: 1 / (1 + (o/halved)^2), "
     "peak: 4 o (1 - o) (1 + skew (1 - 2 o)), o the opening, with its line; stem_*: f of the stem x, with its line",
     source="Merritt, Hydraulic Control Systems (Wiley 1967), ch. 5; Borden (ed.), Control Valves (ISA 1998)",
     forms=(
         Form("throttling", _force("force growing with the square of closure, at closed, as pressure"), _throttling),
-        Form("near_seat", _force("peak of the force at 12 % opening, as pressure"), _near_seat),
+        Form("jet", (*_force("peak of the force, as pressure"), _AT), _jet),
+        Form("drop", (*_force("force at the seat, as pressure"), _HALVED), _drop),
         Form("at_seat", _force("force at the seat, dying away within 12 % opening, as pressure"), _at_seat),
         Form("suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _suction),
         Form("stem_linear", _force("force at closed, growing in proportion to closure, as pressure"), _stem_linear),
@@ -147,6 +193,8 @@ EFFECT = Effect(
         Form(
             "stem_suction", (*_force("force at the seat, dying away with opening, as pressure"), _WITHIN), _stem_suction
         ),
+        Form("stem_jet", (*_force("peak of the force, as pressure"), _AT), _stem_jet),
+        Form("stem_drop", (*_force("force at the seat, as pressure"), _HALVED), _stem_drop),
     ),
     twins=("nonlinear_spring", "lvdt_nonlinearity"),
     odds=0.05,  # most benches are dry
@@ -154,7 +202,8 @@ EFFECT = Effect(
     same_as=dict.fromkeys(
         (
             "throttling",
-            "near_seat",
+            "jet",
+            "drop",
             "at_seat",
             "suction",
             "peak",
@@ -163,6 +212,8 @@ EFFECT = Effect(
             "stem_peak",
             "stem_seat",
             "stem_suction",
+            "stem_jet",
+            "stem_drop",
         ),
         ("nonlinear_spring",),
     ),
