@@ -38,11 +38,12 @@ class Margin:
 
 @dataclass(frozen=True, slots=True)
 class Span:
-    """Rows `start`..`stop`-1 of recording number `record`."""
+    """Rows `start`..`stop`-1 of recording number `record`; what happened before is known from row `history` on."""
 
     record: int
     start: int
     stop: int
+    history: int
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,7 @@ def fold_weights(trials: Sequence[Trial]) -> list[npt.NDArray[np.float64]]:
 
 def _folds(trials: Sequence[Trial]) -> npt.NDArray[np.int64]:
     """The fold of every row of the trials."""
-    return np.concatenate([_fold_of_rows(t.recording.time_s) for t in trials])
+    return np.concatenate([_fold_of_rows(t.recording.time_s, t.led_s) for t in trials])
 
 
 def _folds_of_everything(case: Case) -> npt.NDArray[np.int64]:
@@ -57,10 +57,12 @@ def _folds_of_everything(case: Case) -> npt.NDArray[np.int64]:
     return np.concatenate(folds)
 
 
-def _fold_of_rows(time_s: FloatArray) -> npt.NDArray[np.int64]:
-    duration = time_s[-1] - time_s[0]
+def _fold_of_rows(time_s: FloatArray, led_s: float = 0.0) -> npt.NDArray[np.int64]:
+    """What only leads to the rest, for `led_s`, is in the same fold as its beginning."""
+    first_s = time_s[0] + led_s
+    duration = time_s[-1] - first_s
     length = max(duration / BLOCKS, min(_LONG_S, duration / FOLDS))
-    block = np.minimum((time_s - time_s[0]) // max(length, 1e-9), 1e9).astype(np.int64)
+    block = np.clip((time_s - first_s) // max(length, 1e-9), 0.0, 1e9).astype(np.int64)
     return np.asarray(block % FOLDS, dtype=np.int64)
 
 

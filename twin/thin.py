@@ -3,7 +3,8 @@
 Two ways, taken as far as needed. Rows are left out where they come faster than the lags of a valve need; a row keeps
 its reading as it is (no average: its noise stays the noise that was measured) and gets the mean command since the row
 before it, and the rows around a jump of the command stay, so that no edge moves. A record that lasts too long is seen
-through windows spread evenly over it, each where the stem covers most of its range.
+through windows spread evenly over it, each where the stem covers most of its range. What the stem remembers at the
+start of one is what came before: minutes of that are simulated, in rows and steps far apart, and not compared.
 """
 
 from __future__ import annotations
@@ -43,9 +44,10 @@ LOOK_S = 1_200.0
 #: Windows are about so long [s], and each is the liveliest of so many in its part of the record.
 _WINDOW_S = 300.0
 _CHOICES = 8
-#: At the start of a window nobody knows what the stem remembers; so many lags, or this share, are simulated unseen.
+#: So much of what came before a window [s] leads to it, one row in so many seconds, in steps so many times as long; but
+#: the last so many lags of it as the window itself.
+_HISTORY_S, _HISTORY_ROW_S, _HISTORY_STEPS = 600.0, 1.0, 5.0
 _LEAD_LAGS = 20.0
-_LEAD_SHARE = 0.2
 
 
 def look_at(case: Case) -> tuple[Case, list[DataNote]]:
@@ -63,8 +65,7 @@ def look_at(case: Case) -> tuple[Case, list[DataNote]]:
     coarse_s = hidden_s or (COARSE_STEP_S if rows == whole and _hides_steps(case) else 0.0)
     share = _share(case, rows, coarse_s)
     trials = tuple(_trial(case, span, share, coarse_s) for span in spans)
-    seen = sum(t.recording.n for t in trials)
-    stride = rows / max(seen, 1)
+    stride = rows / max(sum(map(_looked_at, trials)), 1)
     look = replace(
         case,
         recordings=tuple(t.recording for t in trials),
@@ -95,7 +96,7 @@ def on_everything(case: Case, result: StageResult) -> StageResult:
 def _note(
     case: Case, trials: tuple[Trial, ...], spans: tuple[Span, ...], rows: int, whole: int, coarse_s: float
 ) -> DataNote:
-    seen = sum(t.recording.n for t in trials)
+    seen = sum(map(_looked_at, trials))
     where = f"on {seen} rows all over it"
     if rows < whole:
         where = f"on {seen} rows in {len(spans)} windows spread over it"
@@ -117,7 +118,7 @@ def _short(case: Case) -> bool:
 
 def _spans(case: Case, all_of_it: bool) -> tuple[Span, ...]:
     if all_of_it:
-        return tuple(Span(k, 0, r.n) for k, r in enumerate(case.recordings))
+        return tuple(Span(k, 0, r.n, 0) for k, r in enumerate(case.recordings))
     total_s = sum(r.duration_s for r in case.recordings)
     spans: list[Span] = []
     for k, recording in enumerate(case.recordings):
@@ -134,7 +135,7 @@ def _hides_steps(case: Case) -> bool:
 def _windows(record: int, recording: Recording, budget_s: float) -> list[Span]:
     """Windows of together `budget_s`, one in each of as many equal parts of the record."""
     if recording.duration_s <= budget_s:
-        return [Span(record, 0, recording.n)]
+        return [Span(record, 0, recording.n, 0)]
     count = max(1, round(budget_s / _WINDOW_S))
     length_s, part_s = budget_s / count, recording.duration_s / count
     return [_liveliest(record, recording, k * part_s, part_s, length_s) for k in range(count)]
@@ -142,32 +143,57 @@ def _windows(record: int, recording: Recording, budget_s: float) -> list[Span]:
 
 def _liveliest(record: int, recording: Recording, begin_s: float, part_s: float, length_s: float) -> Span:
     origin = recording.time_s[0]
-    best, most = Span(record, 0, recording.n), -1.0
+    best, most = Span(record, 0, recording.n, 0), -1.0
     for offset_s in np.linspace(0.0, max(part_s - length_s, 0.0), _CHOICES):
         first = origin + begin_s + float(offset_s)
-        start, stop = (int(i) for i in np.searchsorted(recording.time_s, (first, first + length_s)))
+        edges = np.searchsorted(recording.time_s, (first - _HISTORY_S, first, first + length_s))
+        history, start, stop = (int(i) for i in edges)
         values = recording.position[start:stop]
         values = values[np.isfinite(values)]
         if values.size < 20:
             continue
         low, high = np.percentile(values, (2.0, 98.0))
         if float(high - low) > most:
-            best, most = Span(record, start, stop), float(high - low)
+            best, most = Span(record, start, stop, history), float(high - low)
     return best
 
 
 def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
-    """The trial of one span, thinned to a `share` of its rows, in steps no shorter than `coarse_s`."""
+    """The trial of one span, thinned to a `share` of its rows, in steps of `coarse_s` or more, and what led to it."""
     whole = case.trials[span.record]
-    recording = whole.recording.slice(span.start, span.stop)
-    rows = kept_rows(recording.command, max(2, ceil(share * recording.n)))
+    recording = whole.recording.slice(span.history, span.stop)
+    led = span.start - span.history
+    led_s = float(recording.time_s[led] - recording.time_s[0])
+    dense = int(np.searchsorted(recording.time_s, recording.time_s[0] + led_s - _LEAD_LAGS * case.base.design.tau_s))
+    rows = np.concatenate([_far_apart(recording, dense), dense + _kept(recording.slice(dense, recording.n), share)])
     thin = thinned(recording, rows)
-    false, vague = (marks[span.start : span.stop][rows] for marks in (whole.false, whole.vague))
+    false, vague = (marks[span.history : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
-    begun = beginning(case.base, thin, make_grid(thin.time_s, step_s, thin.command), case.coarse)
-    trial = make_trial(thin, step_s, false, begun, _fresh_of(whole, span, rows), vague)
-    trial = replace(trial, place=_later(whole, span.start))
-    return trial if span.start == 0 else _led_in(trial, _LEAD_LAGS * case.base.design.tau_s)
+    steps_s = np.where(rows[1:] <= dense, _HISTORY_STEPS * step_s, step_s)
+    begun = beginning(case.base, thin, make_grid(thin.time_s, steps_s, thin.command), case.coarse)
+    trial = make_trial(thin, steps_s, false, begun, _fresh_of(whole, span, rows), vague)
+    seen = thin.time_s - thin.time_s[0] >= led_s
+    return replace(
+        trial, place=_later(whole, span.history), led_s=led_s, use_y=trial.use_y & seen, use_p=trial.use_p & seen
+    )
+
+
+def _kept(recording: Recording, share: float) -> npt.NDArray[np.intp]:
+    """The rows that stay of a `share` of a recording."""
+    return kept_rows(recording.command, max(2, ceil(share * recording.n)))
+
+
+def _far_apart(recording: Recording, stop: int) -> npt.NDArray[np.intp]:
+    """Of the first `stop` rows of a recording as many as it has long periods, and both sides of every jump."""
+    if stop < 2:
+        return np.arange(stop)
+    before = recording.slice(0, stop)
+    return kept_rows(before.command, max(2, ceil(before.duration_s / _HISTORY_ROW_S)))
+
+
+def _looked_at(trial: Trial) -> int:
+    """How many rows of a trial are no history."""
+    return int(np.count_nonzero(trial.recording.time_s - trial.recording.time_s[0] >= trial.led_s))
 
 
 def _later(whole: Trial, first: int) -> Place:
@@ -180,14 +206,7 @@ def _later(whole: Trial, first: int) -> Place:
 
 def _fresh_of(whole: Trial, span: Span, rows: npt.NDArray[np.intp]) -> Freshness | None:
     """How fresh the readings of the kept rows are."""
-    return None if whole.fresh is None else whole.fresh.kept(rows + span.start, whole.recording.time_s)
-
-
-def _led_in(trial: Trial, lead_s: float) -> Trial:
-    """The trial with its first stretch simulated but not compared."""
-    time_s = trial.recording.time_s
-    lead_s = min(lead_s, _LEAD_SHARE * float(time_s[-1] - time_s[0]))
-    return replace(trial, use_y=trial.use_y & (time_s - time_s[0] >= lead_s))
+    return None if whole.fresh is None else whole.fresh.kept(rows + span.history, whole.recording.time_s)
 
 
 def _thinned_noise(noise: NoiseModel, stride: float) -> NoiseModel:

@@ -45,16 +45,16 @@ class TimeGrid:
 
 
 def make_grid(
-    time_s: FloatArray, step_s: float, command: FloatArray | None = None, quick_s: float | None = None
+    time_s: FloatArray, step_s: float | FloatArray, command: FloatArray | None = None, quick_s: float | None = None
 ) -> TimeGrid:
     """Cuts each interval into the fewest equal steps no longer than `step_s` [s]; a gap gets at most 10,000 steps.
 
-    Behind the jumps of a `command`, shape of `time_s`, they are no longer than half of it for `quick_s` [s]; None:
-    for as long as ten of the longer ones take.
+    `step_s` may be different for each interval, shape (n - 1,). Behind the jumps of a `command`, shape of `time_s`,
+    they are no longer than half of it for `quick_s` [s]; None: for as long as ten of the longer ones take.
     """
     longest_s = np.full(time_s.size - 1, step_s)
     if command is not None:
-        longest_s[_behind_jumps(time_s, command, quick_s or QUICK * step_s)] /= FINER
+        longest_s[_behind_jumps(time_s, command, quick_s or QUICK * float(np.min(step_s)))] /= FINER
     steps = np.clip(np.ceil(np.diff(time_s) / longest_s - 1e-9), 1, 10_000).astype(np.int64)
     return TimeGrid(np.ascontiguousarray(time_s, dtype=np.float64), np.concatenate([[0], np.cumsum(steps)]))
 

@@ -12,7 +12,10 @@ from logs.recording import Recording
 from tests.twin.toy_valve import Toy, record, staircase
 from twin import thin
 from twin.case import Case, make_case
+from twin.catalog import effect
+from twin.fit.channel import predict_reading
 from twin.heldout import predict_heldout
+from twin.plant import Inserted, Plant
 from twin.rows import kept_rows, thinned
 from twin.simulate import simulate_recording
 from twin.thin import look_at
@@ -113,7 +116,7 @@ def test_windows_are_spread_and_lively(toy: Recording, monkeypatch: pytest.Monke
     starts = [s.start for s in seen.spans]
     assert len(starts) > 1
     assert starts == sorted(starts)
-    assert sum(r.duration_s for r in seen.recordings) < 0.95 * calm.duration_s
+    assert sum(t.recording.duration_s - t.led_s for t in seen.trials) < 0.95 * calm.duration_s
     assert seen.whole is not None
 
 
@@ -145,14 +148,34 @@ def test_in_coarse_steps_rows_that_come_faster_than_these_are_left_out(
     assert look_at(case)[0].recordings[0].n == rows.size
 
 
-def test_a_window_is_not_compared_before_the_stem_has_forgotten(
+def test_a_window_is_compared_from_its_first_row_on_and_its_history_is_not(
     toy: Recording, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     seen = look(make_case([toy], DesignModel()), monkeypatch, most_s=200.0)
+    assert any(span.history == 0 < span.start for span in seen.spans)
     for span, trial in zip(seen.spans, seen.trials, strict=True):
         time_s = trial.recording.time_s
-        first_s = float(time_s[np.flatnonzero(trial.use_y)[0]] - time_s[0])
-        assert first_s < 5.0 if span.start == 0 else first_s >= min(54.0, 0.2 * float(time_s[-1] - time_s[0]))
+        assert time_s[0] == toy.time_s[span.history]
+        assert trial.led_s == toy.time_s[span.start] - time_s[0]
+        for use in (trial.use_p, trial.use_y):
+            first_s = float(time_s[np.flatnonzero(use)[0]] - time_s[0])
+            assert trial.led_s <= first_s < trial.led_s + 5.0
+
+
+def test_a_window_remembers_what_was_long_before_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A tail of 100 s of a stroke that was over a minute before: from the window alone nobody could know of it."""
+    levels = np.random.default_rng(1).uniform(5.0, 12.0, 120).tolist()
+    long = record(Toy(), staircase(0.05, 10.0, levels), 0.05, seed=1, sigma=8e-4)
+    seen = look(make_case([long], DesignModel()), monkeypatch, most_s=1000.0)
+    slow = Plant(DesignModel(), (Inserted("creep", effect("creep").form("one_tail"), (0.3, 100.0)),))
+    whole = predict_reading(slow, make_case([long], DesignModel()).trials[0])
+    span, trial = seen.spans[-1], seen.trials[-1]
+    assert span.history > 0  # the record is longer than what is remembered of it
+    rows = np.searchsorted(long.time_s, trial.recording.time_s[trial.use_y])
+    apart = (predict_reading(slow, trial)[trial.use_y] - whole[rows]) / DesignModel().travel
+    assert float(np.sqrt(np.mean(apart**2))) < 5e-4
+    steps_s, began_s = np.diff(trial.grid.fine_time_s), trial.grid.fine_time_s[1:] - trial.recording.time_s[0]
+    assert np.median(steps_s[began_s < 0.8 * trial.led_s]) > 3.0 * np.median(steps_s[began_s > trial.led_s])
 
 
 @pytest.mark.parametrize("most_s", [1e9, 200.0])

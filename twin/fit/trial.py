@@ -40,6 +40,7 @@ class Trial:
     `pressure` on the fine grid is the smoothed measured pressure, once it is known (see `twin/fit/smooth.py`).
     `fresh`: how fresh each row's reading is, where readings are seen to be held.
     `place`: among the recordings of the case.
+    `led_s`: so long it only leads to where it is looked at.
     `stem` on the fine grid is where the readings have it, for converters that it takes air from; None without pressure.
     """
 
@@ -56,6 +57,7 @@ class Trial:
     fresh: Freshness | None = None
     place: Place = ALONE
     stem: FloatArray | None = None
+    led_s: float = 0.0
 
     def with_pressure(self, pressure: FloatArray) -> Trial:
         """The same trial with a smoothed measured pressure on its fine grid."""
@@ -64,7 +66,7 @@ class Trial:
 
 def make_trial(
     recording: Recording,
-    step_s: float,
+    step_s: float | FloatArray,
     bad_rows: npt.NDArray[np.bool_] | None = None,
     begun: Begun | None = None,
     fresh: Freshness | None = None,
