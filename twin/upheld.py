@@ -64,10 +64,8 @@ def upheld(
     vain = (after > NO_BETTER * before and not told) or (swings and not exact) or doubted(judgement, exact)
     trace = exact and _follows_commands(judgement.causes) and after**2 - floor**2 < TRACE * (before**2 - floor**2)
     # how much an unmeasured pressure wandered by itself nobody knows, but no law of the commands predicts that
-    # ... and of a slight gap any of a dozen causes that are as good is no answer
-    if before <= (HARDLY if apart or trace else SLIGHT) * floor or (
-        before < SLIGHT * floor and (vain or doubted(replace(judgement, alike={}), exact))
-    ):
+    hardly = before <= (HARDLY if apart or trace else SLIGHT) * floor
+    if hardly or (before < SLIGHT * floor and (vain or _any_of_many(judgement, exact))):
         left = _named_only(judgement, shown)
         return (parts, left) if left.causes and not doubted(left, exact) else nothing(parts, judgement, disturbed)
     vain = vain or _leaves_too_much(parts, wandering**0.5 * floor, judgement, apart, exact, shown)
@@ -92,6 +90,11 @@ def _seen(
     if {c.name for c in judgement.causes} == {"sensor_quantization"} and before > _coarse(floor, sensing.step):
         return _unexplained(parts, judgement)
     return parts, _named_only(judgement, {*sensing.accepted, *shown}) if before <= floor else judgement
+
+
+def _any_of_many(judgement: Judgement, exact: bool) -> bool:
+    """Whether only causes that the record cannot tell apart are together likely; of a slight gap that is no answer."""
+    return doubted(replace(judgement, alike={}), exact)
 
 
 def _coarse(floor: float, step: float) -> float:
