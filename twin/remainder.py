@@ -18,6 +18,8 @@ SLIGHT = 1.3
 #: of the converter for which the measured pressure speaks, and a single law of few numbers by which all of the record
 #: is explained to its noise: it may have been fitted without the only block in which it shows.
 CLEAR, LEFT, ERRATIC, FREE = 2.5, 0.08, 0.2, 5
+#: Of the noise; a cause with so many numbers that leaves more may leave half of that share only.
+CURVE = 2.0
 #: Of what re-tuned numbers leave of the squares, beyond which a cause that leaves something clear explains nothing.
 NUMBERS_DO = 0.8
 
@@ -50,7 +52,8 @@ def leaves_too_much(
     many = any(len(c.parameters) > FREE for c in causes) and not exact
     plain = exact and len(causes) == 1 and len(causes[0].parameters) <= FREE
     share = (ERRATIC if erratic or told or plain else LEFT) * (0.5 if several or many else 1.0)
-    return left > share * gap
+    # what a free curve leaves is not for want of the right form
+    return left > share * (0.5 if many and after > CURVE * floor else 1.0) * gap
 
 
 def no_better_than_numbers(retuned: float, after: float, floor: float, causes: Sequence[Cause], told: bool) -> bool:
