@@ -188,15 +188,14 @@ StartsFor = Callable[[Sequence[Recording], Scales], Sequence[tuple[float, ...]]]
 class Form:
     """One way in which an effect may act. `apply(coefficients, values)` writes it; values are in record units.
 
-    `starts_for(records, scales)` gives the values (in record units) that a fit to these recordings tries first, where
-    the parameters' own are too many or too coarse. What happens `once` is no candidate for several recordings, in which
-    it would have had to happen alike; what each recording has `apart` is one for two of them up to so many, and what
-    begins `anew` in each where they share a clock with breaks. What is `seen` goes by the refresh of the recorded
-    readings, and is a candidate only where that is beyond doubt. What is told by the pressure alone (`by_pressure`) is
-    one only where that was measured. What is `described` is for design models of real machines and never a candidate.
-    What lies `outside` of the vocabulary, in these words, is a rival only: where it explains best, the verdict is that
-    nothing known does. What goes through points of its own is `free`, and no law. `odds`: how common the form is,
-    beside a usual one of its effect.
+    `starts_for(records, scales)`: values that a fit to these recordings tries first, where the parameters' own are too
+    many or too coarse. What happens `once` is no candidate for several recordings, in which it would have had to happen
+    alike; what each recording has `apart` is one for two of them up to so many, and what begins `anew` in each where
+    they share a clock with breaks. What is `seen` goes by the refresh of the recorded readings, a candidate only where
+    that is beyond doubt. What is told by the pressure alone (`by_pressure`) is one only where that was measured. What
+    is `described` is for design models of real machines only. What lies `outside` of the vocabulary, in these words, is
+    a rival only: where it explains best, nothing known does. What goes through points of its own is `free`, and no law.
+    `odds`: how common the form is, beside a usual one; `share`: of the effect's machines, for twins.
     """
 
     name: str
@@ -212,6 +211,7 @@ class Form:
     outside: str = ""
     free: bool = False
     odds: float = 1.0
+    share: float = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,8 +223,8 @@ class Effect:
     it (an asymmetry has no canonical middle). `same_as` gives, per form, the effects that no record of these signals
     can tell from it. `twins` are effects with a similar signature; `equations` and `source` are printed. What `drifts`
     makes repeats differ, and so hides in a noise that was measured between them. What is `erratic` moves in jumps whose
-    order hangs on the smallest difference: no model follows it for long. A form of it that is free, or that each
-    recording has apart, also takes what it `hides`, which the laws of the other forms leave to be named.
+    order hangs on the least difference: no model follows it for long. A form of it that is free, or that each recording
+    has apart, also takes what it `hides`, which the laws of the other forms leave to be named.
     """
 
     name: str

@@ -48,9 +48,26 @@ def test_what_the_record_says_comes_first() -> None:
     fits = {f.names[0]: f for f in decision.findings.fits if len(f.names) == 1}
     short, long = fits["sensor_lag"], fits["additional_lag"]
     accepted = replace(decision, accepted=short)
-    alike, unlike = (replace(long, residuals=share * short.residuals) for share in (1.0, 1.2))
-    assert _more_usual(accepted, alike, Weights())
-    assert not _more_usual(accepted, unlike, Weights())
+    for share, usual in ((1.0, True), (1.2, False)):
+        other = replace(long, residuals=share * short.residuals)
+        assert _more_usual(accepted, ("sensor_lag", [short]), ("additional_lag", [other]), Weights()) is usual
+
+
+@pytest.mark.thorough
+@pytest.mark.parametrize(
+    ("effect_name", "form", "lag_s", "named"),
+    [
+        ("sensor_lag", "first_order", 0.25, "sensor_lag"),  # as long as a valve's; but that would have to be behind it
+        ("additional_lag", "after_play", 0.25, "additional_lag"),
+        ("additional_lag", "after_play", 0.1, "additional_lag"),  # as short as a filter's
+        ("additional_lag", "inertia", 0.4, "additional_lag"),
+    ],
+)
+def test_a_record_that_tells_the_forms_apart_tells_the_twins_apart(effect_name, form, lag_s, named) -> None:
+    """Full strokes at the highest speed, onto both stops: what lags before the stem does not lag as one behind it."""
+    lag = Inserted(effect_name, effect(effect_name).form(form), (lag_s,))
+    decision = settled(judged(a_record(Plant(DesignModel(), (lag,))))[0].decisions[-1], DecisionRules(), Weights())
+    assert decision.names == (named,)
 
 
 @pytest.mark.thorough

@@ -65,12 +65,22 @@ EFFECT = Effect(
     source="Doebelin, Measurement Systems: Application and Design (McGraw-Hill), first- and second-order instruments; "
     "Oppenheim, Schafer, Discrete-Time Signal Processing, 3rd ed. (Pearson 2010), moving average",
     forms=(
-        Form("first_order", _lag("time constant of the filter"), _apply),
-        Form("two_poles", _lag("time constants of the two equal poles together"), _twice),
-        Form("three_poles", _lag("time constants of the three equal poles together"), _thrice),
-        Form("second_order", (*_lag("mean delay of the reading"), DAMPING), _second_order),
-        Form("running_mean", _lag("mean delay of the reading, half the window that it is averaged over"), _mean),
-        Form("running_mean_twice", _lag("mean delay of the reading, the window that it is averaged over"), _mean_twice),
+        Form("first_order", _lag("time constant of the filter"), _apply, share=0.6),
+        Form("two_poles", _lag("time constants of the two equal poles together"), _twice, share=0.15),
+        Form("three_poles", _lag("time constants of the three equal poles together"), _thrice, share=0.05),
+        Form("second_order", (*_lag("mean delay of the reading"), DAMPING), _second_order, share=0.1),
+        Form(
+            "running_mean",
+            _lag("mean delay of the reading, half the window that it is averaged over"),
+            _mean,
+            share=0.07,
+        ),
+        Form(
+            "running_mean_twice",
+            _lag("mean delay of the reading, the window that it is averaged over"),
+            _mean_twice,
+            share=0.03,
+        ),
         Form("leads", (_LEAD,), _leads, outside="the reading picks up the speed of the stem"),
     ),
     twins=("additional_lag", "dead_time"),
