@@ -28,8 +28,10 @@ from twin.fit.space import Cause, Space, cause_starts, make_space
 from twin.plant import Plant
 from twin.stages import StageResult
 
-#: Teeth that are many, and the share of the way that is jumped in all that a model without slips may jump.
+#: Teeth that are many, and the share of the way that is jumped in all that a model without slips may jump. Fewer are
+#: enough where what slips leaves no more than a share of the gap's squares.
 _MANY, _FEW = 10, 0.4
+_SOME, _LEFT = 8, 0.1
 #: The best hypotheses without slips, which are asked whether they make the teeth.
 _OTHERS = 5
 #: Factor by which a model's teeth may be more or fewer, longer or shorter.
@@ -79,10 +81,12 @@ def slipping(case: Case, decision: Decision) -> Decision | None:
         return None
     look = _looking(channel, _valve(case))
     seen = look.teeth(channel.measured)
-    if seen.count < _MANY or fixed_in_place(seen):
+    if seen.count < _SOME or fixed_in_place(seen):
         return None
     found = _likeliest(case, decision, look, seen)
     if found is None or found.mse > _LEAVES * decision.findings.none.mse:
+        return None
+    if seen.count < _MANY and decision.rest_of(found) > _LEFT:
         return None
     if any(look.of(other.plant).total > _FEW * seen.total for other in _better(decision, found)):
         return None

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from control.design import DesignModel
@@ -99,3 +100,25 @@ def test_a_cause_is_tried_in_its_other_forms_before_its_twin() -> None:
     assert conspiracy(end, profile, findings.phi) > 0.5
     found = without_conspiracy(told, DecisionRules(), Weights()).accepted
     assert [(c.name, c.form.name) for c in found.space.causes if c.form] == [(name, "hinged_mid")]
+
+
+def test_a_free_curve_does_not_spare_the_numbers_in_the_place_of_a_law() -> None:
+    """A coarse reading, in which the curve found some of the rounding: it had the better evidence, and was named."""
+    name, twin = "spring_asymmetry", "position_dependent_friction"
+    law = Inserted(name, effect(name).form("hinged_mid"), (-0.03,))
+    decision = judged(a_record(Plant(DesignModel(compliance=0.189), (law,))))[0].decisions[-1]
+    accepted = alone(decision, name)
+    curve = Cause(twin, effect(twin), effect(twin).form("profile"))
+    free = fit(
+        decision.findings.channel,
+        space := make_space(accepted.space.base, (curve,), accepted.space.numbers, accepted.space.scales),
+        starts_of(space, []),
+        rounds=8,
+    )
+    spared = replace(free, z=np.where(np.arange(free.z.size) < len(accepted.space.numbers), 0.0, free.z))
+    lead = decision.findings.score(accepted) - decision.findings.score(spared)
+    spared = replace(spared, mse=accepted.mse, prior=spared.prior - 2.0 * (lead + 50.0))
+    told = replace(decision, accepted=accepted, explained=True)
+    told = replace(told, findings=replace(decision.findings, fits=(accepted, spared)))
+    assert conspiracy(accepted, spared, decision.findings.phi) > 0.0
+    assert without_conspiracy(told, DecisionRules(), Weights()).names == (name,)

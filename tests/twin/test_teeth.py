@@ -150,6 +150,22 @@ def test_another_model_that_jumps_as_far_refutes_slips_and_short_teeth_however_m
     assert (slipping(case, decision) is None) is refutes
 
 
+@pytest.mark.thorough
+@pytest.mark.parametrize(("some", "left", "told"), [(1.0, 1.1, True), (1.0, 0.9, False), (1.1, 1.1, False)])
+def test_fewer_teeth_are_enough_where_slips_leave_little(
+    some: float, left: float, told: bool, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """`some`, `left`: the least number of teeth, over those there are, and the most that may be left, over what is."""
+    case, decision = judged(*(record(Random(0.6, 0.3, seed), RAMPS, DT, seed, SIGMA, 0.006) for seed in (5, 6)))
+    found = slipping(case, decision)
+    assert found is not None and found.slips is not None
+    count = found.slips.seen.count
+    monkeypatch.setattr("twin.by_teeth._MANY", 2 * count)
+    monkeypatch.setattr("twin.by_teeth._SOME", some * count)
+    monkeypatch.setattr("twin.by_teeth._LEFT", left * found.rest)
+    assert (slipping(case, decision) is not None) is told
+
+
 def test_what_was_explained_to_its_noise_is_left_alone() -> None:
     records = [record(Random(0.6, 0.3, seed), RAMPS, DT, seed, SIGMA, 0.006) for seed in (5, 6)]
     case, decision = judged(*records)

@@ -31,20 +31,20 @@ def late(lag_s: float) -> Decision:
 
 @pytest.mark.thorough
 @pytest.mark.parametrize(
-    ("lag_s", "name", "twin"), [(0.08, "sensor_lag", "additional_lag"), (0.8, "additional_lag", "sensor_lag")]
+    ("lag_s", "name", "twin"), [(0.08, "sensor_lag", "additional_lag"), (6.0, "additional_lag", "sensor_lag")]
 )
 def test_of_twins_the_one_of_the_more_usual_size_is_named(lag_s: float, name: str, twin: str) -> None:
     decision = settled(late(lag_s), DecisionRules(), Weights())
     assert decision.names == (name,)
     weighed = weigh(decision, Weights())
-    assert weighed.probability[name] == Weights().twin_ceiling
+    assert weighed.probability[name] == pytest.approx(Weights().twin_ceiling, abs=0.02)
     assert 0.1 < weighed.probability[twin] < weighed.probability[name]
     assert weighed.sets == ((name, twin),)
 
 
 @pytest.mark.thorough
 def test_what_the_record_says_comes_first() -> None:
-    decision = late(0.8)
+    decision = late(6.0)
     fits = {f.names[0]: f for f in decision.findings.fits if len(f.names) == 1}
     short, long = fits["sensor_lag"], fits["additional_lag"]
     accepted = replace(decision, accepted=short)
@@ -72,7 +72,7 @@ def test_a_record_that_tells_the_forms_apart_tells_the_twins_apart(effect_name, 
 
 @pytest.mark.thorough
 def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:
-    decision = settled(late(0.8), DecisionRules(), Weights())
+    decision = settled(late(6.0), DecisionRules(), Weights())
     rivals = [f for f in decision.findings.fits if f.names == ("additional_lag",)]
     assert len(rivals) == 1
     cause = rivals[0].space.causes[0]
@@ -81,8 +81,8 @@ def test_a_twin_is_tried_in_the_form_that_is_one_and_counts_once() -> None:
 
 @pytest.mark.thorough
 def test_how_usual_a_size_is() -> None:
-    fits = {f.names[0]: f for f in late(0.8).findings.fits if len(f.names) == 1}
-    assert log_usual(fits["sensor_lag"]) < log_usual(fits["additional_lag"])  # 0.8 s is long for a filter
+    fits = {f.names[0]: f for f in late(6.0).findings.fits if len(f.names) == 1}
+    assert log_usual(fits["sensor_lag"]) < log_usual(fits["additional_lag"])  # 6 s is long for a filter
     assert log_usual(fits["stiction"]) == 0.0  # nothing is known of it
 
 
@@ -126,7 +126,7 @@ def test_a_lag_of_the_stem_and_one_of_the_sensor_add_up_in_any_order() -> None:
 
 @pytest.mark.thorough
 def test_a_set_holds_each_name_once_however_many_forms_of_it_come_near() -> None:
-    decision = settled(late(0.8), DecisionRules(), Weights())
+    decision = settled(late(6.0), DecisionRules(), Weights())
     near = [f for f in decision.findings.fits if f.names == ("sensor_lag",)]
     several = replace(decision, findings=replace(decision.findings, fits=(*decision.findings.fits, *near, *near)))
     assert weigh(several, Weights()).sets == (("additional_lag", "sensor_lag"),)

@@ -11,8 +11,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from twin.choose.candidates import effect_causes
-from twin.choose.decide import Decision
+from twin.choose.decide import FREE, Decision
 from twin.choose.in_place import in_place_of
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, stands_in
@@ -23,21 +25,28 @@ from twin.fit.space import Cause
 def without_conspiracy(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:
     """The decision with each cause replaced by its twin where only the latter leaves the design's numbers alone."""
     for cause in decision.accepted.space.causes if decision.explained else ():
-        best = _likelier_twin(decision, cause, rules, weights)
-        if best is None:
+        if _likelier_twin(decision, cause, rules, weights) is None:
             continue
         decision = _in_sparing_form(decision, cause, rules, weights)
-        best = _likelier_twin(decision, cause, rules, weights)
+        # a free curve finds something to spare the numbers with, in the place of a law
+        laws = len(decision.accepted.space.unknowns) + FREE
+        best = _likelier_twin(decision, cause, rules, weights, laws)
         if best is not None:
             decision = replace(decision, accepted=best, rest=decision.rest_of(best))
     return decision
 
 
-def _likelier_twin(decision: Decision, cause: Cause, rules: DecisionRules, weights: Weights) -> Fit | None:
-    """The likeliest hypothesis with a twin in the place of a cause, if it is the likelier one for the numbers."""
+def _likelier_twin(
+    decision: Decision, cause: Cause, rules: DecisionRules, weights: Weights, below: float = np.inf
+) -> Fit | None:
+    """The likeliest hypothesis with a twin in the place of a cause, if it is the likelier one for the numbers.
+
+    `below`: so many unknowns it must not have.
+    """
     twins = cause.effect.twins if cause.effect is not None else ()
     same = [f for f in decision.findings.fits if f.mse <= decision.accepted.mse + rules.plain]
     rivals = [f for f in same for twin in twins if stands_in(f, decision.accepted, cause.name, twin)]
+    rivals = [f for f in rivals if len(f.space.unknowns) < below]
     best = max(rivals, key=decision.findings.score, default=None)
     return best if best is not None and _likelier(decision, best, weights) else None
 

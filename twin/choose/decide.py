@@ -24,7 +24,7 @@ _BENT, _STRAIGHTER = 50.0, 0.2
 #: How far a number may be accused to have moved where nobody believes what they all moved together.
 _UNBELIEVED = 0.05
 #: By how many unknowns a free curve exceeds a law.
-_FREE = 5
+FREE = 5
 #: Mean squared residual over the floor up to which a signal is explained to its noise.
 _EXACT = 1.1
 #: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
@@ -144,7 +144,7 @@ def _fewer_unknowns(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     near = [
         f
         for f in findings.fits
-        if len(f.space.unknowns) <= len(fit.space.unknowns) - _FREE
+        if len(f.space.unknowns) <= len(fit.space.unknowns) - FREE
         and f.mse <= fit.mse + slack
         and (_with_another(f, fit) or (lays_open(f, fit) and findings.score(f) > findings.score(fit) - rules.evidence))
     ]

@@ -37,7 +37,7 @@ def _mean_twice(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _lag(doc: str) -> tuple[Parameter]:
-    return lag_parameter(doc, usual=(0.1, 3.0))
+    return lag_parameter(doc, usual=(0.2, 3.0))
 
 
 def _leads(c: Coefficients, values: Sequence[float]) -> None:
