@@ -11,7 +11,7 @@ from twin.case import Case
 from twin.choose.decide import Decision
 from twin.choose.likelier import likelier
 from twin.choose.outside import outside_of
-from twin.choose.reform import bent_by
+from twin.choose.reform import spares_numbers
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
 from twin.closure import rms
@@ -25,10 +25,6 @@ from twin.upheld import DOUBTFUL, doubted, explained_to_noise, nothing, shown_by
 from twin.verdict import Judgement, pronounce
 
 Progress = Callable[[str, float], None]
-
-#: Squares of the design numbers' moves, in their priors' deviations, that nobody believes, and so many times more than
-#: with the cause: without it the numbers are what explains the gap.
-_BENT, _BENT_BY = 50.0, 4.0
 
 
 def weightiest_first(judgement: Judgement, parts: GapParts, travel: float) -> Judgement:
@@ -45,12 +41,6 @@ def _slight_rival(result: StageResult) -> bool:
     """Whether what explains a slight gap behind the measured pressure best is none of the known effects."""
     behind = result.decisions[1:]
     return any(outside_of(d) is not None and d.findings.none.mse < DOUBTFUL**2 * d.floor for d in behind)
-
-
-def _bends(less: Decision, decision: Decision) -> bool:
-    """Whether without a cause the design numbers have to do what nobody believes, and unaccused."""
-    bent = bent_by(less.accepted)
-    return bent > _BENT and _BENT_BY * bent_by(decision.accepted) < bent
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +121,7 @@ class Hearing:
             or needless_number(parts, judgement.causes, self._slight(judgement), percent)
         ):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
-            if any(map(_bends, left, result.decisions)):
+            if any(spares_numbers(d.accepted, less.accepted) for d, less in zip(result.decisions, left, strict=True)):
                 break
             result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
             judgement = self.judgement(result)

@@ -12,15 +12,12 @@ from dataclasses import dataclass
 from twin.choose.claims import size_of
 from twin.choose.findings import Findings
 from twin.choose.plainer import effects_of, instead_of, plainer
-from twin.choose.reform import bent_by, lays_open
+from twin.choose.reform import bent_by, lays_open, spares_numbers
 from twin.choose.rules import DecisionRules
 from twin.events.teeth import Slips
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
 
-#: Squares of the design numbers' moves, in their priors' deviations, that nobody believes; and the share of them that a
-#: larger hypothesis may need to count as sparing the numbers.
-_BENT, _STRAIGHTER = 50.0, 0.2
 #: How far a number may be accused to have moved where nobody believes what they all moved together.
 _UNBELIEVED = 0.05
 #: By how many unknowns a free curve exceeds a law.
@@ -214,7 +211,7 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     trifle = 0.0 if numbers and small.mse > rules.quiet * floor else rules.trifle
     tidy = gain > max(rules.complete * left, trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
-    spares = bent_by(small) > _BENT and bent_by(large) < _STRAIGHTER * bent_by(small)
+    spares = spares_numbers(large, small)
     first = small is findings.none
     # what others leave beyond what any healthy machine does is no healthy machine's
     beyond = not first and small.mse > _SCATTER * rules.within

@@ -16,6 +16,10 @@ from twin.fit.space import Cause
 #: A hypothesis, and what one more cause makes of it.
 Beyond = tuple[Fit, list[tuple[Cause, ...]]]
 
+#: Squares of the design numbers' moves, in their priors' deviations, that nobody believes; and the share of them that a
+#: larger hypothesis may need to count as sparing the numbers.
+_BENT, _STRAIGHTER = 50.0, 0.2
+
 
 def exactly(causes: Sequence[Cause]) -> frozenset[tuple[str, str]]:
     """A hypothesis by its causes and their forms."""
@@ -27,6 +31,11 @@ def bent_by(one: Fit) -> float:
     count = len(one.space.numbers)
     moved = one.z[:count] / one.space.spreads[:count]
     return float(moved @ moved)
+
+
+def spares_numbers(more: Fit, less: Fit) -> bool:
+    """Whether without a further cause the numbers have to do what nobody believes, and with it hardly anything."""
+    return bent_by(less) > _BENT and bent_by(more) < _STRAIGHTER * bent_by(less)
 
 
 def in_laws(one: Fit, causes: Sequence[Cause]) -> list[tuple[Cause, ...]]:

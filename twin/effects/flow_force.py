@@ -10,7 +10,7 @@ from logs.recording import FloatArray
 from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.shapes import bow, detrended
 
-#: Opening (fraction of travel) at which the force near the seat peaks.
+#: Opening (fraction of travel) over which a force at the seat falls to 1/e, and about which one near it may peak.
 PEAK = 0.12
 
 
