@@ -61,7 +61,7 @@ def draw(path: Path, replays: Sequence[Replay], design: DesignModel, *, curves: 
     """
     from matplotlib.figure import Figure as Canvas
 
-    from twin.model_units import as_spoken
+    from twin.model.model_units import as_spoken
 
     shown, design = [_spoken(each, design.spoken) for each in replays[:MOST]], as_spoken(design)
     rows = 2 * len(shown) + curves

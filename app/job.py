@@ -61,7 +61,7 @@ def perform(session: Session, job: Job, *, out: Path | None, live: bool, title: 
     valve has been sent to its safe command and the record is closed.
     """
     from app.console import KeyboardNotes, RunDisplay
-    from app.dry_run import check_watchdogs
+    from app.watchdogs import check_watchdogs
     from control.loop import Hooks, Loop
     from control.supervise import supervised
     from hal.signals import stop_signals

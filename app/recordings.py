@@ -78,7 +78,7 @@ def bench_design(path: Path) -> DesignModel:
     """
     from control.design import load_design
     from logs.units import PERCENT, plain_name
-    from twin.model_units import in_units_of
+    from twin.model.model_units import in_units_of
 
     given = load_design(path)
     if PERCENT in (plain_name(given.pressure_unit), plain_name(given.position_unit)):
@@ -93,7 +93,7 @@ def design_of_file(path: Path, pressure_unit: str, position_unit: str) -> Design
     """The design of a file in these units, spoken of in its own. Raises: `BadInput` naming the file."""
     from control.design import load_design
     from logs.spoken import spoken_in
-    from twin.model_units import in_units_of
+    from twin.model.model_units import in_units_of
 
     given = load_design(path)
     try:
@@ -129,7 +129,7 @@ def _of_another_house(recording: Recording) -> bool:
 
 def _identified(recordings: Sequence[Recording], pressure_unit: str, position_unit: str) -> DesignModel:
     from control.identify import identify
-    from twin.tuned import tuned_to
+    from twin.ready.tuned import tuned_to
 
     try:
         return tuned_to(recordings, identify(recordings).design)

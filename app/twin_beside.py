@@ -12,7 +12,7 @@ from click import echo
 if TYPE_CHECKING:
     from app.job import Job
     from control.loop import Sink
-    from twin.plant import Plant
+    from twin.model.plant import Plant
 
 
 #: What to do about a model in percent beside a bench in another unit, or the other way round.
@@ -26,8 +26,8 @@ def plant_beside(path: Path, command_unit: str) -> Plant:
     """
     from control.design import load_design
     from hal.errors import BadInput
-    from twin.insert import plant_of
-    from twin.model_units import in_units_of
+    from twin.model.insert import plant_of
+    from twin.model.model_units import in_units_of
 
     try:
         return plant_of(in_units_of(load_design(path), command_unit, "in", _OF_THE_BENCH))

@@ -30,14 +30,14 @@ from logs.load import load_recording
 from logs.recording import FloatArray, Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
-from twin.case import Case, make_case
-from twin.catalog import effect
+from twin.choose.stages import combined, driven_about
+from twin.fit.case import Case, make_case
 from twin.fit.channel import Channel, position_channel, pressure_channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
-from twin.plant import effect_tables
-from twin.simulate import simulate_recording
-from twin.stages import combined, driven_about
+from twin.model.catalog import effect
+from twin.model.plant import effect_tables
+from twin.replay.simulate import simulate_recording
 
 FAMILY = "reference"
 SEED, FRESH = 101, (102, 103, 104)

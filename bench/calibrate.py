@@ -37,7 +37,7 @@ from sim_device.physics.offline import record
 from sim_device.sealed import GRADES, Cause, Label
 from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
-from twin.insert import inserted_from
+from twin.model.insert import inserted_from
 
 SHARES = {"effect": 0.50, "none": 0.14, "parameter": 0.12, "effects": 0.14, "outsider": 0.10}
 TEMPERATURES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)

@@ -31,7 +31,7 @@ from control.design import DesignModel, load_design, save_design
 from hal.errors import BadInput
 from logs.roles import split_header
 from logs.units import conversion
-from twin.model_units import in_units_of
+from twin.model.model_units import in_units_of
 
 _KEPT = ("verdict", "causes", "confusable", "ranking", "where", "gap", "data_quality")
 _DIGITAL = ("sensor_quantization", "stale_samples", "sensor_dropouts")

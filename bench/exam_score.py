@@ -13,8 +13,8 @@ from app.blind.mark import Mark, mark
 from app.interval import share
 from hal.errors import BadInput
 from sim_device.sealed import Cause, Label
-from twin.catalog import effects
 from twin.fit.numbers import NUMBERS
+from twin.model.catalog import effects
 
 #: The classes of a sealed folder, and what a label of ours calls them.
 KINDS = {"healthy": "none", "number": "parameter", "single": "effect", "pair": "effects", "outsider": "outsider"}

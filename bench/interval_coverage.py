@@ -15,8 +15,8 @@ import numpy as np
 from scipy.signal import lfilter
 
 from logs.recording import FloatArray
-from twin.closure import closure
 from twin.diagnosis import Share
+from twin.where.closure import closure
 from twin.where.strata import bin_shares, class_shares
 from twin.where.telescope import stage_shares, two_stage_terms
 

@@ -26,14 +26,14 @@ from app.interval import wilson
 from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.sealed import Cause, Label
-from twin.catalog import effects
 from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
-from twin.effect import Scales
 from twin.fit.channel import predict_reading, pressure_fine
 from twin.fit.numbers import NUMBERS, nominal, retuned
 from twin.fit.trial import make_trial
-from twin.plant import Inserted, Plant
+from twin.model.catalog import effects
+from twin.model.effect import Scales
+from twin.model.plant import Inserted, Plant
 
 SHARES = {"effect": 0.6, "parameter": 0.2, "none": 0.2}
 POSITION_IN, PRESSURE_PSI = 6e-4, 4e-3

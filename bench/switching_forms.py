@@ -12,11 +12,11 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import Recording
-from twin.catalog import effect, effects
-from twin.effect import Form
 from twin.explain import typical_values
-from twin.plant import Inserted, Plant
-from twin.simulate import simulate_recording
+from twin.model.catalog import effect, effects
+from twin.model.effect import Form
+from twin.model.plant import Inserted, Plant
+from twin.replay.simulate import simulate_recording
 
 HOSTS = ("distributed_hysteresis", "friction_in_motion", "stiction", "creep")
 HARDLY = 1e-7

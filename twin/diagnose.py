@@ -7,52 +7,52 @@ from dataclasses import dataclass, field, replace
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.admit import admit
-from twin.assemble import assembled
-from twin.beginning import start_notes
-from twin.by_condition import gap_by_condition
-from twin.case import Case, Margin, make_case, widened
 from twin.choose.felt import felt_only
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
 from twin.choose.search_rules import SearchRules
+from twin.choose.stages import StageResult, judge
 from twin.choose.switches import switch_notes, without_switches
 from twin.choose.trim import spoken
 from twin.choose.twins import settled
 from twin.choose.weigh import Weights
-from twin.closed_loop import closed_loop
+from twin.choose.witness import gauge_note
 from twin.diagnosis import Diagnosis
-from twin.effect import Scales
-from twin.far_readings import heavy_tail
+from twin.events.refresh import new_only, refreshed_together
+from twin.fit.beginning import start_notes
+from twin.fit.case import Case, Margin, make_case, widened
 from twin.fit.channel import predict_pressure, predict_reading
 from twin.fit.fitting import Fit
-from twin.gap import GapParts, retuning_pays
-from twin.hearing import Hearing
-from twin.held_noise import as_reported, noise_of_refreshed
-from twin.lateness import late_commands
-from twin.moved import moved_numbers
+from twin.judge.assemble import assembled
+from twin.judge.by_condition import gap_by_condition
+from twin.judge.closed_loop import closed_loop
+from twin.judge.gap import GapParts, retuning_pays
+from twin.judge.hearing import Hearing
+from twin.judge.moved import moved_numbers
+from twin.judge.partial import Interrupted, Known, known_so_far
+from twin.judge.repeatable import differ_for_a_cause, leaves_what_rests
+from twin.judge.unexplained import residual_signature
+from twin.judge.verdict import Judgement
+from twin.judge.wander import unrest
+from twin.judge.whereabouts import attributed, whereabouts
+from twin.model.effect import Scales
+from twin.model.plant import Inserted, Plant, effect_tables
 from twin.next.propose import propose
 from twin.noise.blurred import on_their_steps
 from twin.noise.copies import used_once
 from twin.noise.model import estimate_noise
-from twin.partial import Interrupted, Known, known_so_far
-from twin.pieces import cut_at_holes
-from twin.plant import Inserted, Plant, effect_tables
-from twin.recorder import recorder_note
-from twin.refresh import new_only, refreshed_together
-from twin.repeatable import differ_for_a_cause, leaves_what_rests
-from twin.rounding import lacking_codes, rounding_down
-from twin.sensing import Sensing, sense
-from twin.stages import StageResult, judge
-from twin.statement import signed
-from twin.thin import look_at, on_everything
-from twin.timing import settled_timing
-from twin.tuned import retuned_fit
-from twin.unexplained import residual_signature
-from twin.verdict import Judgement
-from twin.wander import unrest
-from twin.whereabouts import attributed, whereabouts
-from twin.witness import gauge_note
+from twin.ready.lateness import late_commands
+from twin.ready.rounding import lacking_codes, rounding_down
+from twin.ready.thin import look_at, on_everything
+from twin.ready.timing import settled_timing
+from twin.ready.tuned import retuned_fit
+from twin.record.admit import admit
+from twin.record.far_readings import heavy_tail
+from twin.record.held_noise import as_reported, noise_of_refreshed
+from twin.record.pieces import cut_at_holes
+from twin.record.recorder import recorder_note
+from twin.record.sensing import Sensing, sense
+from twin.report.statement import signed
 
 Progress = Callable[[str, float], None]
 Prepared = tuple[Case, Case, Sensing, tuple[Inserted, ...]]

@@ -14,11 +14,11 @@ import numpy as np
 from control.design import DesignModel
 from control.experiment_catalog import make_experiment
 from logs.recording import FloatArray
-from twin.chain import chain_response
-from twin.effect import Effect, Form
 from twin.fit.numbers import NUMBERS, nominal, retuned
-from twin.plant import Inserted, Plant, reading_response
-from twin.timegrid import make_grid
+from twin.model.effect import Effect, Form
+from twin.model.plant import Inserted, Plant, reading_response
+from twin.model.timegrid import make_grid
+from twin.replay.chain import chain_response
 
 #: Experiments of `lostmotion sweep` that are tried; hold, the slowest to tell anything, last.
 KINDS = ("staircase", "nested", "ramp", "steps", "random", "multisine", "hold")

@@ -9,15 +9,15 @@ import numpy as np
 
 from control.design import DesignModel, save_design
 from logs.recording import FloatArray
-from twin.answered import answered, series_answered
 from twin.diagnose import Outcome
 from twin.diagnosis import Diagnosis, write_diagnosis
 from twin.files import FILES
-from twin.model_units import as_spoken
+from twin.model.model_units import as_spoken
 from twin.next.file import explained
+from twin.report.answered import answered, series_answered
 from twin.report.page import write_report
+from twin.report.rrd import write_rrd
 from twin.report.series import Series
-from twin.rrd import write_rrd
 
 #: Numbers that make up for something unknown are true nowhere else: one such model missed a further record by five
 #: times as much as the design (368005, case 13 of the thirty-fourth plant).

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from control.design import DesignModel, load_design
 from hal.errors import BadInput
-from twin.case import Margin
+from twin.fit.case import Margin
 
 FOLDER = Path(__file__).parent / "baselines"
 

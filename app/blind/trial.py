@@ -118,7 +118,7 @@ def _diagnosed(order: Order, record: Recording) -> Outcome:
     from twin.choose.search_rules import SearchRules
     from twin.diagnose import Settings, diagnose
     from twin.diagnosis import write_diagnosis
-    from twin.insert import inserted_from
+    from twin.model.insert import inserted_from
 
     design = _baseline(order.family)
     settings = Settings(search=SearchRules(threads=1), margin=margin(order.family))
@@ -166,10 +166,10 @@ def _closure(family: str, outcome: Outcome, fresh: Recording) -> dict[str, float
     """
     import numpy as np
 
-    from twin.closure import closure, rms
     from twin.events.scan import scan_events
     from twin.noise.model import estimate_noise
-    from twin.simulate import simulate_recording
+    from twin.replay.simulate import simulate_recording
+    from twin.where.closure import closure, rms
 
     noise = estimate_noise([fresh])
     good = ~scan_events(fresh, noise).false_position

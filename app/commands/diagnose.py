@@ -17,9 +17,9 @@ if TYPE_CHECKING:
 
     from control.design import DesignModel
     from logs.recording import DataNote, Recording
-    from twin.case import Margin
     from twin.diagnose import Outcome
     from twin.diagnosis import Diagnosis
+    from twin.fit.case import Margin
 
 _NO_DESIGN = "no --design given"
 _FROM_RECORD = "identified from the record"
@@ -105,8 +105,8 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
     from app.progress import diagnosis_progress
     from app.recordings import design_for, from_open
     from twin.diagnose import Settings, diagnose
-    from twin.insert import inserted_from
-    from twin.partial import Interrupted
+    from twin.judge.partial import Interrupted
+    from twin.model.insert import inserted_from
     from twin.write import write_outcome
 
     outcome = None
@@ -155,9 +155,9 @@ def _without_design(origin: str, model: DesignModel, records: Sequence[Recording
 def _margin(golden: Sequence[Recording], model: DesignModel) -> tuple[Margin, tuple[DataNote, ...]]:
     """What the design misses on the healthy machine anyway, and what to say of it."""
     from logs.recording import DataNote
-    from twin.case import Margin
-    from twin.healthy import healthy_margin
-    from twin.insert import plant_of
+    from twin.fit.case import Margin
+    from twin.model.insert import plant_of
+    from twin.ready.healthy import healthy_margin
 
     if not golden:
         return Margin(), ()

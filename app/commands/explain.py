@@ -14,8 +14,8 @@ import click
 from hal.errors import BadInput
 
 if TYPE_CHECKING:
-    from twin.effect import Effect, Form, Parameter
     from twin.explain import Signature, Visibility
+    from twin.model.effect import Effect, Form, Parameter
 
 
 @click.command(name="explain", help=__doc__, short_help=(__doc__ or "").partition("\n")[0])
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 def command(
     name: str | None, form_name: str | None, kind: str | None, out: Path | None, as_json: bool, markdown: bool
 ) -> None:
-    from twin.catalog import effect, effects
+    from twin.model.catalog import effect, effects
 
     if markdown:
         from twin.report.effects_page import effects_page
@@ -117,7 +117,7 @@ def _facts(one: Effect) -> dict[str, object]:
 
 
 def _number(p: Parameter) -> dict[str, object]:
-    from twin.effect import Scales
+    from twin.model.effect import Scales
 
     return {
         "name": p.name,
@@ -139,7 +139,7 @@ def _plain(v: Visibility) -> dict[str, object]:
 
 
 def _describe(one: Effect) -> None:
-    from twin.effect import Scales
+    from twin.model.effect import Scales
 
     click.echo(f"{one.name} ({one.stage}): {one.claim}")
     click.echo(f"equations: {one.equations}")
@@ -156,7 +156,7 @@ def _describe(one: Effect) -> None:
 
 
 def _size(form: Form, shown: Signature) -> str:
-    from twin.effect import Scales
+    from twin.model.effect import Scales
 
     words = [
         f"{p.name} {v:.3g} {Scales().unit(p.kind)}".removesuffix(" 1")
@@ -167,7 +167,7 @@ def _size(form: Form, shown: Signature) -> str:
 
 def _show(one: Effect, form: Form, shown: Signature, seen: tuple[Visibility, ...]) -> None:
     from control.preview import duration_words, with_scale
-    from twin.sketch import plane
+    from twin.report.sketch import plane
 
     click.echo(f"\nsimulated: {_size(form, shown)}")
     if not shown.residual_percent.any():

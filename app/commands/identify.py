@@ -39,7 +39,7 @@ def command(
     from control.identify import identify
     from control.identify_checks import check_commands
     from hal.errors import BadInput
-    from twin.model_units import as_spoken
+    from twin.model.model_units import as_spoken
 
     if out.suffix != ".toml":
         raise BadInput(f"--out {out}: a model file ends in .toml")
@@ -66,8 +66,8 @@ def command(
 
 def _draw(found: Identified, recordings: list[Recording], plot: Path) -> None:
     from app.fit_picture import Replay, draw
-    from twin.insert import plant_of
-    from twin.simulate import simulate_recording
+    from twin.model.insert import plant_of
+    from twin.replay.simulate import simulate_recording
 
     plant = plant_of(found.design)
     replays = [Replay(each, simulate_recording(plant, each)[1]) for each in recordings]

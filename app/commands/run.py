@@ -211,7 +211,8 @@ def _announce(session: Session, wanted: Wanted, as_json: bool) -> None:
 def _preview(
     wanted: Wanted, as_json: bool, profile: Profile, *, port: str | None, out: Path | None, twin: Path | None
 ) -> None:
-    from app.dry_run import bench_unopened, check_files, check_watchdogs
+    from app.dry_run import bench_unopened, check_files
+    from app.watchdogs import check_watchdogs
     from control.preview import duration_words
 
     plan, controller = wanted.plan, wanted.controller

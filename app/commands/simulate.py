@@ -42,9 +42,9 @@ def command(
     check_apart({"--out": out, "--plot": plot})
     from app.fit_picture import Replay, check_target, draw
     from app.recordings import design_of_file, load_all
-    from twin.insert import plant_of
-    from twin.model_units import as_spoken
-    from twin.simulate import simulate_recording
+    from twin.model.insert import plant_of
+    from twin.model.model_units import as_spoken
+    from twin.replay.simulate import simulate_recording
 
     if plot is not None:
         check_target(plot, (model, run))

@@ -192,7 +192,8 @@ def _announce(session: Session, experiment: Experiment, job: Job, as_json: bool)
 def _preview(
     experiment: Experiment, first: int, as_json: bool, profile: Profile, port: str | None, out: Path | None
 ) -> None:
-    from app.dry_run import bench_unopened, check_files, check_watchdogs
+    from app.dry_run import bench_unopened, check_files
+    from app.watchdogs import check_watchdogs
     from control.plan import check_bench, plan_experiment
     from control.preview import duration_words, with_scale
 

@@ -82,8 +82,8 @@ def on_unseen(sweep: Sweep, seed: int) -> str:
 
 def simulated(recording: Recording, design: DesignModel) -> FloatArray:
     """The model's stem for the commands of a record, as `lostmotion simulate` computes it [in]."""
-    from twin.insert import plant_of
-    from twin.simulate import simulate_recording
+    from twin.model.insert import plant_of
+    from twin.replay.simulate import simulate_recording
 
     return simulate_recording(plant_of(design), recording)[1]
 

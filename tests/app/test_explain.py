@@ -9,8 +9,8 @@ import pytest
 
 from app.cli import run
 from control.design import DesignModel
-from twin.catalog import effect, effects
 from twin.fit.numbers import NUMBERS, nominal
+from twin.model.catalog import effect, effects
 
 
 def test_list_names_all(capsys: pytest.CaptureFixture[str]) -> None:

@@ -13,9 +13,9 @@ from hal.errors import BadInput
 from logs.recording import Recording
 from tests.app.test_diagnose import columns_of, diagnosed, no_pictures, said, write
 from tests.twin.judged import a_record
-from twin.catalog import effect
-from twin.healthy import healthy_margin
-from twin.plant import Inserted, Plant
+from twin.model.catalog import effect
+from twin.model.plant import Inserted, Plant
+from twin.ready.healthy import healthy_margin
 
 __all__ = ["no_pictures"]  # a fixture of these tests too
 

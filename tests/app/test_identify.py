@@ -15,7 +15,7 @@ from control.identify import default_design
 from control.identify_checks import told_positions
 from logs.recording import Recording
 from tests.control.toy_valve import Toy, random_steps, record
-from twin.model_units import in_units_of
+from twin.model.model_units import in_units_of
 
 TRUTH = {"a1": 8.78, "a2": 5.82, "compliance": 0.19, "tau": 2.7, "rate_limit": 0.12, "travel": 0.5625, "ep.tau": 0.3}
 

@@ -17,10 +17,10 @@ from bench.exam_score import Answer, claims, label_of, text
 from control.design import DesignModel, save_design
 from hal.errors import BadInput
 from logs.recording import Recording
-from twin.catalog import effect
-from twin.model_units import in_units_of
-from twin.plant import Inserted, Plant
-from twin.simulate import simulate_recording
+from twin.model.catalog import effect
+from twin.model.model_units import in_units_of
+from twin.model.plant import Inserted, Plant
+from twin.replay.simulate import simulate_recording
 
 GAP = {"before": 2.0, "retuned": 1.5, "after": 0.2, "noise_floor": 0.2}
 

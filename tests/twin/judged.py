@@ -6,17 +6,17 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.case import make_case
 from twin.choose.rules import DecisionRules
 from twin.choose.search_rules import SearchRules
+from twin.choose.stages import StageResult, judge
 from twin.choose.weigh import Weights
 from twin.diagnose import Settings
-from twin.insert import inserted_from
-from twin.plant import Plant
-from twin.sensing import sense
-from twin.simulate import simulate_recording
-from twin.stages import StageResult, judge
-from twin.verdict import Judgement, pronounce
+from twin.fit.case import make_case
+from twin.judge.verdict import Judgement, pronounce
+from twin.model.insert import inserted_from
+from twin.model.plant import Plant
+from twin.record.sensing import sense
+from twin.replay.simulate import simulate_recording
 
 #: A diagnosis that stops at two causes, which takes a third of the time where nothing explains all.
 UP_TO_TWO = Settings(search=SearchRules(most=2))

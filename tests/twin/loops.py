@@ -8,11 +8,11 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.catalog import effect
-from twin.effect import Coefficients
-from twin.live.valve import Valve
-from twin.plant import Inserted, Plant, stem_response
-from twin.timegrid import make_grid
+from twin.model.catalog import effect
+from twin.model.effect import Coefficients
+from twin.model.plant import Inserted, Plant, stem_response
+from twin.model.timegrid import make_grid
+from twin.replay.valve import Valve
 
 D = DesignModel()
 TIME_S = np.arange(0.0, 90.0, 0.1)

@@ -6,7 +6,6 @@ import numpy as np
 
 from logs.recording import DataNote
 from tests.twin.toy_valve import TRAVEL, Toy, staircase
-from twin.closure import gap
 from twin.diagnosis import (
     Cause,
     Diagnosis,
@@ -19,6 +18,7 @@ from twin.diagnosis import (
 )
 from twin.noise.model import SignalNoise
 from twin.report.series import Series
+from twin.where.closure import gap
 from twin.where.isolability import describe
 from twin.where.map import WherePiece, where_map
 

@@ -10,10 +10,10 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.catalog import effect
 from twin.kernels.elastic import stretches
-from twin.plant import Inserted, Plant, stem_response
-from twin.timegrid import make_grid
+from twin.model.catalog import effect
+from twin.model.plant import Inserted, Plant, stem_response
+from twin.model.timegrid import make_grid
 
 TIME_S = np.arange(0.0, 60.0, 0.05)
 #: Up and down through the deadband with an inner loop, and a jump.

@@ -10,8 +10,8 @@ from scipy.ndimage import gaussian_filter1d
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record
-from twin.plant import Plant
-from twin.simulate import simulate_recording
+from twin.model.plant import Plant
+from twin.replay.simulate import simulate_recording
 
 HEALTHY = Plant(DesignModel())
 READING_IN = 1.5e-4

@@ -11,16 +11,16 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import SIGMA, trial_of
-from twin.case import make_case
-from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
-from twin.effect import Coefficients
+from twin.fit.case import make_case
 from twin.fit.channel import position_channel, predict_reading
-from twin.place import Place
-from twin.plant import Inserted, Plant, reading_response
-from twin.slots import KNOTS
-from twin.timegrid import make_grid
+from twin.kernels.slots import KNOTS
+from twin.model.catalog import effect
+from twin.model.effect import Coefficients
+from twin.model.place import Place
+from twin.model.plant import Inserted, Plant, reading_response
+from twin.model.timegrid import make_grid
 
 FORM = effect("lvdt_drift").form("apart")
 VALUES = tuple(0.001 * k for k in range(1, KNOTS + 1))

@@ -10,17 +10,17 @@ import pytest
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record, judged
-from twin.case import make_case
-from twin.catalog import effect
 from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
-from twin.detectable import detection_limits
-from twin.effect import Scales
+from twin.fit.case import make_case
 from twin.fit.channel import position_channel
 from twin.fit.space import Cause, cause_starts, make_space
-from twin.insert import inserted_from, plant_of
-from twin.plant import Inserted, Plant
-from twin.whereabouts import attributed
+from twin.judge.detectable import detection_limits
+from twin.judge.whereabouts import attributed
+from twin.model.catalog import effect
+from twin.model.effect import Scales
+from twin.model.insert import inserted_from, plant_of
+from twin.model.plant import Inserted, Plant
 
 LAG = effect("sensor_lag").form("first_order")
 

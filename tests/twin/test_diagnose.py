@@ -10,17 +10,17 @@ import pytest
 
 from control.design import DesignModel, load_design, save_design
 from tests.twin.judged import a_record
-from twin.case import Case, make_case
-from twin.catalog import effects
+from twin.choose.stages import StageResult
 from twin.diagnose import _final_plant, _model
 from twin.diagnosis import Cause, Estimate
-from twin.effect import Effect, Form, Scales
-from twin.insert import inserted_from
-from twin.model_units import in_units_of
-from twin.plant import Inserted, Plant
-from twin.sensing import Sensing
-from twin.stages import StageResult
-from twin.verdict import Judgement
+from twin.fit.case import Case, make_case
+from twin.judge.verdict import Judgement
+from twin.model.catalog import effects
+from twin.model.effect import Effect, Form, Scales
+from twin.model.insert import inserted_from
+from twin.model.model_units import in_units_of
+from twin.model.plant import Inserted, Plant
+from twin.record.sensing import Sensing
 
 FORMS = [(one, form) for one in effects().values() for form in one.forms]
 NOTHING = Sensing((), {}, 0.0)

@@ -12,15 +12,15 @@ import pytest
 from logs.recording import Recording
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin import diagnose as module
-from twin.catalog import effect
 from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.fit.space import Cause
+from twin.judge.partial import Interrupted
+from twin.judge.repeatable import differ_for_a_cause, leaves_what_rests
+from twin.model.catalog import effect
+from twin.model.plant import Inserted, Plant
 from twin.noise.model import SignalNoise, estimate_noise
-from twin.partial import Interrupted
-from twin.plant import Inserted, Plant
-from twin.repeatable import differ_for_a_cause, leaves_what_rests
 
 DRIFT = Inserted("friction_drift", effect("friction_drift").form("linear"), (3e-5,))
 LOOSE = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.003,))

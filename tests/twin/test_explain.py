@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from hal.errors import BadInput
-from twin.catalog import effect, effects
 from twin.explain import KINDS, signature, typical_values, visibilities
+from twin.model.catalog import effect, effects
 from twin.report.effect_figure import effect_figure, save_effect_figure
 from twin.report.effects_page import effects_page
-from twin.sketch import plane
+from twin.report.sketch import plane
 
 
 def test_typical_sizes_lie_within_the_bounds_and_are_no_neutral() -> None:

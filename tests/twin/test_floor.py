@@ -13,26 +13,26 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from tests.twin.trials import SIGMA, staircase, trial_of
-from twin.case import Margin
-from twin.catalog import effect
 from twin.choose.decide import _likely_floor, decide
 from twin.choose.findings import Findings
 from twin.choose.plainer import plainer
 from twin.choose.rules import DecisionRules
+from twin.choose.stages import StageResult
 from twin.choose.trim import spoken, trimmed
 from twin.choose.weigh import Weights
-from twin.closure import rms
 from twin.diagnose import Settings, diagnose
-from twin.effect import Scales
+from twin.fit.case import Margin
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit
 from twin.fit.smooth import smoothed_pressure
 from twin.fit.space import Cause, make_space
-from twin.heldout import refitted
-from twin.plant import Inserted, Plant
-from twin.simulate import simulate_recording
-from twin.stages import StageResult
-from twin.verdict import Judgement, pronounce
+from twin.judge.heldout import refitted
+from twin.judge.verdict import Judgement, pronounce
+from twin.model.catalog import effect
+from twin.model.effect import Scales
+from twin.model.plant import Inserted, Plant
+from twin.replay.simulate import simulate_recording
+from twin.where.closure import rms
 
 RULES = DecisionRules()
 DESIGN = DesignModel()

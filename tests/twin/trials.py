@@ -9,7 +9,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.fit.trial import Trial, make_trial
-from twin.plant import Plant, pressure_response, reading_response, stem_response
+from twin.model.plant import Plant, pressure_response, reading_response, stem_response
 
 DESIGN = DesignModel()
 SIGMA = 5e-4

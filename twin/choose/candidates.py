@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from twin.catalog import effects
-from twin.effect import Effect, Form
 from twin.fit.channel import Channel
 from twin.fit.space import Cause
-from twin.plant import Inserted, Plant
-from twin.slots import S_SEEN
+from twin.kernels.slots import S_SEEN
+from twin.model.catalog import effects
+from twin.model.effect import Effect, Form
+from twin.model.plant import Inserted, Plant
 
-#: What makes a reading that rounds down, in `twin/rounding.py`.
+#: What makes a reading that rounds down, in `twin/ready/rounding.py`.
 ROUNDS_BY = "lvdt_calibration"
 
 

@@ -35,7 +35,7 @@ class Decision:
     """What a channel says. `rest`: what is left of the excess over the noise, as a share of the excess before.
 
     `floor`: mean squared residual of the true model. `imitates`: not explained, because the design numbers had to move
-    further than anybody believes. `slips`: what was accepted was recognised by its slips (`twin.by_teeth`).
+    further than anybody believes. `slips`: what was accepted was recognised by its slips (`twin.judge.by_teeth`).
     """
 
     findings: Findings

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from twin.choose.screen import Prospect
-from twin.effect import Form
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+from twin.model.effect import Form
 
 #: A hypothesis, and what one more cause makes of it.
 Beyond = tuple[Fit, list[tuple[Cause, ...]]]

@@ -20,7 +20,7 @@ from twin.fit.fitting import Fit, starts_of
 from twin.fit.larger_steps import Look
 from twin.fit.least_squares import jacobian
 from twin.fit.space import Cause, Space, cause_starts, make_space
-from twin.plant import Plant
+from twin.model.plant import Plant
 
 #: Starts of a form that are looked at besides the one where it ended alone; forms with more are looked at there only.
 _MOST_STARTS = 24

@@ -27,13 +27,13 @@ from twin.choose.score import yardstick_for
 from twin.choose.screen import Prospect, make_screen, prospects
 from twin.choose.search_rules import SearchRules
 from twin.choose.slips import several_slips
-from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.larger_steps import Look, in_larger_steps
 from twin.fit.retuning import retuned
 from twin.fit.space import Cause, make_space
-from twin.plant import Plant
+from twin.model.effect import Scales
+from twin.model.plant import Plant
 
 Progress = Callable[[str, float], None]
 _T = TypeVar("_T")

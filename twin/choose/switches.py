@@ -16,7 +16,7 @@ from logs.recording import DataNote
 from twin.choose.decide import Decision
 from twin.fit.fitting import Fit, evaluated
 from twin.fit.space import Cause
-from twin.plant import Inserted, Plant
+from twin.model.plant import Inserted, Plant
 
 #: Share of its size that a switch keeps, and the share at most of what leaving it out costs that this costs.
 _HARDLY, _COSTS = 1e-4, 0.05

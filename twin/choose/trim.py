@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-from twin.catalog import effects
 from twin.choose.alike import alike
 from twin.choose.claims import size_of
 from twin.choose.decide import Decision, with_numbers
@@ -21,6 +20,7 @@ from twin.choose.reach import moved_square
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
+from twin.model.catalog import effects
 
 #: A cause that is, with its twins, less likely than this is not named, unless one rival and it have as much as `BOTH`.
 LIKELY, BOTH = 0.45, 0.85

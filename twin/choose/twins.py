@@ -13,7 +13,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.catalog import effects
 from twin.choose.conspire import without_conspiracy
 from twin.choose.decide import Decision
 from twin.choose.in_place import in_place_of
@@ -23,6 +22,7 @@ from twin.choose.usual import log_usual
 from twin.choose.weigh import Weights, stands_in, twins_of
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+from twin.model.catalog import effects
 
 
 def with_usual_twins(decision: Decision, weights: Weights) -> Decision:

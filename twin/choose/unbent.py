@@ -12,7 +12,7 @@ from dataclasses import replace
 from twin.choose.decide import Decision
 from twin.choose.lean import as_designed
 from twin.choose.needless import LEAVES
-from twin.effect import Scales
+from twin.model.effect import Scales
 
 
 def unbent(decision: Decision, scales: Scales) -> Decision:

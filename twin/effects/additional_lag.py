@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.lags import DAMPING, lag_parameter, natural_s
-from twin.slots import (
+from twin.kernels.slots import (
     S_LAG2_S,
     S_MASS_DAMPING,
     S_MASS_NATURAL_S,
@@ -15,6 +13,8 @@ from twin.slots import (
     V_TAU_AFTER_S,
     V_TAU_BEFORE_S,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.lags import DAMPING, lag_parameter, natural_s
 
 
 def _lag(doc: str) -> tuple[Parameter]:

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.recording import Recording
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
 from twin.events.onsets import clocks, onsets
-from twin.slots import EP_CYCLE_S, EP_DAMPING, EP_DEAD_FALLS, EP_DEAD_S, EP_MIXED_S, EP_RINGS_S, EP_SEEN_S
+from twin.kernels.slots import EP_CYCLE_S, EP_DAMPING, EP_DEAD_FALLS, EP_DEAD_S, EP_MIXED_S, EP_RINGS_S, EP_SEEN_S
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
 
 #: Recordings that may each have a clock of their own.
 _CLOCKS = 4

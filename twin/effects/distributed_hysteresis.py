@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 from scipy.special import ndtri
 
-from twin.effect import Coefficients, Effect, Form, Parameter
 from twin.kernels.elastic import stretches
-from twin.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING, V_RINGS
+from twin.kernels.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING, V_RINGS
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 
 def _spread(doc: str) -> tuple[Parameter]:

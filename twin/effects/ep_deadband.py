@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.effect import Apply, Coefficients, Effect, Form, Parameter
-from twin.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
+from twin.kernels.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
+from twin.model.effect import Apply, Coefficients, Effect, Form, Parameter
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.units import atmosphere
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import (
+from twin.kernels.slots import (
     EP_AIR,
     EP_AMBIENT,
     EP_ATMOSPHERE,
@@ -23,6 +22,7 @@ from twin.slots import (
     EP_STROKE,
     FOREVER,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 #: Error at which a booster is fully open, as a share of the pressure that the travel takes: a tenth of a psi.
 _WIDE = 0.034

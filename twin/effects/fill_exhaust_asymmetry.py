@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import (
+from twin.kernels.slots import (
     EP_CHAMBER,
     EP_CLOG_DOWN,
     EP_CLOG_UP,
@@ -19,6 +18,7 @@ from twin.slots import (
     EP_WANES,
     EP_WANES_BELOW,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.shapes import bow, detrended
+from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.shapes import bow, detrended
 
 #: Opening (fraction of travel) over which a force at the seat falls to 1/e, and about which one near it may peak.
 PEAK = 0.12

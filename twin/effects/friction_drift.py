@@ -7,10 +7,7 @@ from dataclasses import replace
 from math import exp
 
 from logs.recording import Recording
-from twin.anew import anew
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.shapes import WHEN
-from twin.slots import (
+from twin.kernels.slots import (
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
@@ -22,6 +19,9 @@ from twin.slots import (
     V_STEP_TIME_S,
     V_WEAR,
 )
+from twin.model.anew import anew
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.shapes import WHEN
 
 _RATE = Parameter(
     name="rate",

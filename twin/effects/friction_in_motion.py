@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import (
+from twin.kernels.slots import (
     FOREVER,
     V_GIVE_HIGH,
     V_GIVE_LOW,
@@ -21,6 +20,7 @@ from twin.slots import (
     V_PRESLIDING,
     V_ROUNDED,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 _SHARE = Parameter(
     name="share",

@@ -7,8 +7,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import LESS, S_LESS, S_PLAY, S_SHARE, S_SINKS_S, S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN, S_SOONER, S_ZERO
+from twin.kernels.slots import (
+    LESS,
+    S_LESS,
+    S_PLAY,
+    S_SHARE,
+    S_SINKS_S,
+    S_SLIPS,
+    S_SLIPS_ABOVE,
+    S_SLIPS_OPEN,
+    S_SOONER,
+    S_ZERO,
+)
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 _PLAY = Parameter(
     name="play",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_GAIN, S_PICKS, S_PICKS_FROM, S_ZERO
+from twin.kernels.slots import S_GAIN, S_PICKS, S_PICKS_FROM, S_ZERO
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 _GAIN = Parameter(
     name="gain",

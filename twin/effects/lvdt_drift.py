@@ -9,10 +9,7 @@ from functools import cache
 import numpy as np
 
 from logs.recording import FloatArray, Recording
-from twin.anew import anew
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.shapes import WHEN
-from twin.slots import (
+from twin.kernels.slots import (
     KNOTS,
     S_CYCLE_COS,
     S_CYCLE_S,
@@ -28,6 +25,9 @@ from twin.slots import (
     S_WANDER_S,
     S_ZERO,
 )
+from twin.model.anew import anew
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.shapes import WHEN
 
 _RATE = Parameter(
     name="rate",

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.recording import Recording
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.slots import (
+from twin.kernels.slots import (
     S_AT_OPEN,
     S_BOW,
     S_FROM,
@@ -23,6 +22,7 @@ from twin.slots import (
     S_ZERO,
     TABLE,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
 
 
 def _parameter(name: str, doc: str) -> Parameter:

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.shapes import CENTRE, WHEN, WIDTH, bow, edge, swing
-from twin.slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
+from twin.kernels.slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
+from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.shapes import CENTRE, WHEN, WIDTH, bow, edge, swing
 
 
 def _parameter(name: str, doc: str) -> Parameter:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.lags import DAMPING, lag_parameter, natural_s
-from twin.slots import S_DAMPING, S_LAG2_S, S_LAG3_S, S_LAG_S, S_LEADS_S, S_NATURAL_S, S_WINDOW_S, S_WINDOWS
+from twin.kernels.slots import S_DAMPING, S_LAG2_S, S_LAG3_S, S_LAG_S, S_LEADS_S, S_NATURAL_S, S_WINDOW_S, S_WINDOWS
+from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.lags import DAMPING, lag_parameter, natural_s
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import S_BAND, S_SEEN, S_STEP
+from twin.kernels.slots import S_BAND, S_SEEN, S_STEP
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:

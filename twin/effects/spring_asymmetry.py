@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import V_TAU_CLOSE_S, V_TAU_OPEN_S
+from twin.kernels.slots import V_TAU_CLOSE_S, V_TAU_OPEN_S
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 
 def _asymmetry(doc: str) -> tuple[Parameter]:

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import Recording
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.refresh import refreshes
-from twin.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN, S_WAITS
+from twin.events.refresh import refreshes
+from twin.kernels.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN, S_WAITS
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
 
 _PERIOD = Parameter(
     name="period",

@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.effect import Coefficients, Effect, Form, Parameter
-from twin.slots import (
+from twin.kernels.slots import (
     FOREVER,
     V_AGING_S,
     V_BREAKAWAY,
@@ -19,6 +18,7 @@ from twin.slots import (
     V_TARGET_STICKS,
     V_TAU_AFTER_S,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter
 
 #: Speed of the target below which it rests where friction grows with the time at rest, as a share of the rate limit.
 _REST = 2e-5

@@ -10,8 +10,7 @@ import numpy as np
 
 from logs.recording import FloatArray, Recording
 from logs.units import atmosphere
-from twin.effect import Coefficients, Effect, Form, Parameter, Scales
-from twin.slots import (
+from twin.kernels.slots import (
     EP_AMBIENT,
     EP_ATMOSPHERE,
     EP_CLIP,
@@ -27,6 +26,7 @@ from twin.slots import (
     EP_TANK,
     EP_TANK_CUTS,
 )
+from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
 
 _SUPPLY = Parameter(
     name="supply",

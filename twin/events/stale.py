@@ -12,8 +12,8 @@ from scipy.special import ndtr
 from scipy.stats import binomtest, chi2
 
 from logs.recording import FloatArray
-from twin.clock import clock_of
 from twin.diagnosis import Estimate
+from twin.events.clock import clock_of
 from twin.events.evidence import Evidence, nothing
 
 _MOST = 30_000  # pairs: more change nothing but the time

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import FloatArray, Recording
-from twin.chain import chain_response, takes_air
 from twin.fit.compiled import in_noise
 from twin.fit.trial import Trial, concatenate
-from twin.plant import (
+from twin.kernels.slots import S_CORE, V_REMEMBERS
+from twin.model.plant import (
     Plant,
     core_at,
     picked_up,
@@ -27,7 +27,7 @@ from twin.plant import (
     stem_of,
     stem_response,
 )
-from twin.slots import S_CORE, V_REMEMBERS
+from twin.replay.chain import chain_response, takes_air
 
 #: Of what the readings go through: a prediction that goes through less stays put.
 _PUT = 0.02

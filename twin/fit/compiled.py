@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.rows import Rows
+from twin.record.rows import Rows
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -15,7 +15,7 @@ from twin.fit.contest import followed, ranked, rough_unknowns
 from twin.fit.larger_steps import Look
 from twin.fit.least_squares import Minimum, descend, minimise
 from twin.fit.space import Space, cause_starts
-from twin.plant import Plant
+from twin.model.plant import Plant
 
 #: How far off, in z, wrong numbers are also looked for: from their nominals the way may lead through a worse fit.
 _FAR = {

@@ -17,8 +17,8 @@ from twin.fit.compiled import at_all_rows
 from twin.fit.least_squares import jacobian
 from twin.fit.space import Space
 from twin.fit.trial import Trial
-from twin.rows import Rows, kept_rows, thinned
-from twin.timegrid import QUICK, TimeGrid, make_grid
+from twin.model.timegrid import QUICK, TimeGrid, make_grid
+from twin.record.rows import Rows, kept_rows, thinned
 
 #: Steps are so many times larger at the most, as long as there are about so many left.
 LARGER = 5.0

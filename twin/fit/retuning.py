@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.effect import Scales
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
-from twin.plant import Plant
+from twin.model.effect import Scales
+from twin.model.plant import Plant
 
 _ROUNDS = 20
 #: Mean squared residual, noise = 1, beyond which something is left that other numbers might explain.

@@ -13,7 +13,7 @@ from scipy.ndimage import gaussian_filter1d, maximum_filter1d, minimum_filter1d
 from logs.recording import FloatArray
 from twin.fit.channel import pressure_fine
 from twin.fit.trial import Trial
-from twin.plant import Plant
+from twin.model.plant import Plant
 from twin.where.smoother import WHITE, smooth_pressure
 
 #: What smoothing adds to the model drives a valve as far as its square is more than so many variances of its noise.

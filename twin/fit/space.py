@@ -14,9 +14,9 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.effect import Effect, Form, Parameter, Scales
 from twin.fit.numbers import NUMBERS, nominal, reference, retuned
-from twin.plant import Inserted, Plant
+from twin.model.effect import Effect, Form, Parameter, Scales
+from twin.model.plant import Inserted, Plant
 
 #: Relative spread of a design number that stands accused.
 ACCUSED_SPREAD = 0.5

@@ -10,10 +10,10 @@ import numpy.typing as npt
 from scipy.ndimage import gaussian_filter1d
 
 from logs.recording import FloatArray, Recording
-from twin.begun import Begun
-from twin.place import ALONE, Place
-from twin.refresh import Freshness
-from twin.timegrid import TimeGrid, make_grid
+from twin.events.refresh import Freshness
+from twin.model.place import ALONE, Place
+from twin.model.timegrid import TimeGrid, make_grid
+from twin.record.begun import Begun
 
 #: Rows right after the start that do not count: the state before the first row is unknown.
 SETTLE_S = 3.0

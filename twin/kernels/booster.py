@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.slots import (
+from twin.kernels.slots import (
     EP_AIR,
     EP_AMBIENT,
     EP_ATMOSPHERE,

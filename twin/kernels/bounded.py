@@ -7,7 +7,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.booster import inflow
-from twin.slots import (
+from twin.kernels.slots import (
     EP_AMBIENT,
     EP_ATMOSPHERE,
     EP_BAND,

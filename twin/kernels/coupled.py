@@ -12,7 +12,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.slots import (
+from twin.kernels.slots import (
     FOREVER,
     V_AGING_S,
     V_BREAKAWAY,

@@ -7,7 +7,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.slots import (
+from twin.kernels.slots import (
     FOREVER,
     V_BREAKAWAY,
     V_ON_STEM,

@@ -17,9 +17,7 @@ from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
 from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
-from twin.kernels.stroke import struck
-from twin.kernels.supply import cut, supplied, supply, zero
-from twin.slots import (
+from twin.kernels.slots import (
     EP_AIR,
     EP_BAND,
     EP_BAND_MODE,
@@ -54,6 +52,8 @@ from twin.slots import (
     EP_ZERO,
     FOREVER,
 )
+from twin.kernels.stroke import struck
+from twin.kernels.supply import cut, supplied, supply, zero
 
 #: What makes the lag another one, besides a band and limits.
 _OTHER_LAGS = np.array([EP_QUICK, EP_CLOG_UP, EP_CLOG_DOWN, EP_WANES])

@@ -7,7 +7,7 @@ from scipy.special import expit
 
 from logs.recording import FloatArray
 from twin.kernels.active import acts
-from twin.slots import (
+from twin.kernels.slots import (
     FOREVER,
     V_BREAKS,
     V_BREAKS_S,

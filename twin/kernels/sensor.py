@@ -17,7 +17,7 @@ from twin.kernels.mean import running_mean
 from twin.kernels.second_order import swinging
 from twin.kernels.sinking import core_of, first_core
 from twin.kernels.slipping import slipped, slips
-from twin.slots import (
+from twin.kernels.slots import (
     KNOTS,
     S_AT_OPEN,
     S_BOW,

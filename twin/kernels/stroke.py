@@ -6,7 +6,7 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.follow import follow
-from twin.slots import EP_STROKE
+from twin.kernels.slots import EP_STROKE
 
 
 def struck(

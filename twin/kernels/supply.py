@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.slots import (
+from twin.kernels.slots import (
     EP_CLIP,
     EP_CUT,
     EP_DRIFTS,

@@ -11,8 +11,8 @@ import numpy as np
 from hal.sample import Quality
 from twin.live.alarm import AlarmRules, Cusum, CusumState, design_cusum
 from twin.live.twin import LiveTwin
+from twin.model.plant import Plant
 from twin.noise.fast import fast_memory
-from twin.plant import Plant
 
 _UNUSABLE = Quality.MISSING | Quality.SENTINEL | Quality.IMPLAUSIBLE
 #: The first stretch of a run from which the noise of the reading is taken, at least so many readings [s].

@@ -1,7 +1,7 @@
 """The model beside the bench: told each row's command, it says what the row's readings should have been.
 
-Exactly what `twin/simulate.py` says of the whole record afterwards, because the same compiled passes run here with
-their state carried from row to row. It sees no reading but the first.
+Exactly what `twin/replay/simulate.py` says of the whole record afterwards, because the same compiled passes run here
+with their state carried from row to row. It sees no reading but the first.
 """
 
 from __future__ import annotations
@@ -10,11 +10,11 @@ import math
 
 import numpy as np
 
-from twin.chain import Chain
-from twin.live.sensor import Sensor
-from twin.plant import Plant, core_at, picked_up, pulled_stem
-from twin.simulate import Start, step_for
-from twin.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
+from twin.kernels.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
+from twin.model.plant import Plant, core_at, picked_up, pulled_stem
+from twin.replay.chain import Chain
+from twin.replay.sensor import Sensor
+from twin.replay.simulate import Start, step_for
 
 _MOST_STEPS = 10_000
 

@@ -7,18 +7,18 @@ from dataclasses import dataclass
 
 from control.design import DesignModel
 from control.experiment import Experiment
-from twin.catalog import effects
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
+from twin.choose.stages import StageResult
 from twin.diagnosis import EffectTest
-from twin.effect import Parameter, Scales
+from twin.model.catalog import effects
+from twin.model.effect import Parameter, Scales
+from twin.model.plant import Inserted
 from twin.next.candidates import library
 from twin.next.criterion import Scale, effect_distance, lay_out, response
 from twin.next.limits import Limits
 from twin.next.rivals import Rival, rival_of
 from twin.next.search import value_of
-from twin.plant import Inserted
-from twin.stages import StageResult
 
 #: Experiments that are looked at in full; the library comes sorted by length.
 _LOOKED_AT = 20

@@ -13,12 +13,12 @@ import numpy as np
 
 from control.experiment import Experiment
 from logs.recording import FloatArray
-from twin.chain import chain_response
 from twin.fit.fitting import Fit
 from twin.fit.least_squares import minimise
+from twin.model.plant import Plant, reading_response
+from twin.model.timegrid import TimeGrid, make_grid
 from twin.next.rivals import Rival
-from twin.plant import Plant, reading_response
-from twin.timegrid import TimeGrid, make_grid
+from twin.replay.chain import chain_response
 
 #: Rows of an experiment while designs are compared: the difference of two explanations is slow.
 _ROWS_S, _STEP_S = 0.25, 0.1

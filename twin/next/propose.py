@@ -13,8 +13,10 @@ from control.experiment import Experiment
 from control.preview import duration_words
 from logs.spoken import Spoken
 from twin.choose.rules import DecisionRules
+from twin.choose.stages import StageResult
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest, NextExperiment
+from twin.judge.verdict import Judgement
 from twin.next.coverage import best_coverage, blind_spots, weakens
 from twin.next.criterion import Scale
 from twin.next.file import rounded, toml_text
@@ -23,8 +25,6 @@ from twin.next.limits import Limits, limits_of
 from twin.next.rivals import Dispute, disputes
 from twin.next.search import Found, best_experiment
 from twin.next.sensors import advice
-from twin.stages import StageResult
-from twin.verdict import Judgement
 
 FILE = "next.toml"
 #: An experiment that brings less than this share of what settles a dispute is not worth the bench's time.

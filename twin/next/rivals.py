@@ -9,11 +9,11 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.choose.decide import Decision
+from twin.choose.stages import StageResult, combined
 from twin.choose.weigh import comparable
 from twin.fit.fitting import Fit
-from twin.plant import Plant
-from twin.stages import StageResult, combined
-from twin.verdict import Judgement
+from twin.judge.verdict import Judgement
+from twin.model.plant import Plant
 
 #: A cause named with less than this is in dispute even without a confusion set.
 SURE = 0.85

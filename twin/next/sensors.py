@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from twin.catalog import effects
 from twin.fit.numbers import NUMBERS
+from twin.model.catalog import effects
 
 _SECOND_POSITION = "a second position signal on the stem (dial gauge, limit switch or another LVDT)"
 _PRESSURE = "a measured pressure behind the E/P transducer"

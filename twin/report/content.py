@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from math import ceil
 
-from twin.catalog import effects
 from twin.diagnosis import Bin, Cause, Diagnosis, Gap, Share
+from twin.model.catalog import effects
 from twin.report.words import SOURCES, interval, name, number, percent
 
 #: A probability that is 0 in its last digit is not impossible.

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from twin.effect import Effect
     from twin.explain import Signature
+    from twin.model.effect import Effect
 
 
 def effect_figure(effect: Effect, words: str, one: Signature) -> Figure:

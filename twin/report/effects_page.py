@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from twin.catalog import effects
-from twin.effect import Effect, Form, Scales
+from twin.model.catalog import effects
+from twin.model.effect import Effect, Form, Scales
 
 _HEAD = """# Effects
 

@@ -10,7 +10,7 @@ Facts = Mapping[str, object]
 
 
 def signature_rows(found: Facts) -> list[tuple[str, str]]:
-    """Label and text of what `twin.unexplained.residual_signature` found; other keys are left out."""
+    """Label and text of what `twin.judge.unexplained.residual_signature` found; other keys are left out."""
     rows = ((label, text(found)) for label, text in _ROWS.items())
     return [(label, said) for label, said in rows if said]
 

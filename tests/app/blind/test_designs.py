@@ -5,7 +5,7 @@ import pytest
 from app.blind.designs import baseline, margin
 from control.design import DesignModel
 from hal.errors import BadInput
-from twin.insert import inserted_from
+from twin.model.insert import inserted_from
 
 
 def test_the_thesis_family_is_its_design() -> None:

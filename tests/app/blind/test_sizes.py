@@ -7,7 +7,7 @@ from control.design import DesignModel
 from sim_device.physics.catalog import imperfections, parameters
 from sim_device.sealed import Cause, Label
 from tests.app.blind.lines import said
-from twin.catalog import effects
+from twin.model.catalog import effects
 
 
 def answer(name: str, parameter: str, value: float, low: float, high: float) -> dict[str, object]:

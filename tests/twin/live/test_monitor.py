@@ -10,11 +10,11 @@ import pytest
 from control.design import DesignModel
 from hal.sample import Quality
 from logs.recording import FloatArray, Recording
-from twin.catalog import effect
 from twin.live.monitor import Monitor, Seen
 from twin.live.sink import COLUMNS, TwinSink
-from twin.plant import Inserted, Plant
-from twin.simulate import Start, simulate_recording
+from twin.model.catalog import effect
+from twin.model.plant import Inserted, Plant
+from twin.replay.simulate import Start, simulate_recording
 
 SIGMA = 0.0006
 

@@ -9,12 +9,12 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.catalog import effects
-from twin.chain import takes_air
-from twin.effect import Form, Scales
 from twin.live.twin import LiveTwin
-from twin.plant import Inserted, Plant
-from twin.simulate import Start, simulate_recording
+from twin.model.catalog import effects
+from twin.model.effect import Form, Scales
+from twin.model.plant import Inserted, Plant
+from twin.replay.chain import takes_air
+from twin.replay.simulate import Start, simulate_recording
 
 FORMS = [(name, form.name) for name, effect in effects().items() for form in effect.forms if not form.seen]
 
@@ -48,7 +48,7 @@ def test_equals_the_simulation_of_the_whole_record(name: str, form: str) -> None
     record, start = jagged_record(), Start(7.0, 0.1, 0.12)
     pressure, position = live(plant, record, start)
     whole_p, whole_y = simulate_recording(plant, record, start=start)
-    # a replay of so little air goes over both until they agree, a live model block by block (see `twin.chain`)
+    # a replay of so little air goes over both until they agree, a live model block by block (see `twin.replay.chain`)
     close = 1e-3 if takes_air(plant.coefficients(record.duration_s).ep) else 1e-9
     assert np.max(np.abs(pressure - whole_p)) < close
     assert np.max(np.abs(position - whole_y)) < close

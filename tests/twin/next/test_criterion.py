@@ -7,10 +7,10 @@ import pytest
 
 from control.experiment_catalog import make_experiment
 from tests.twin.next.two_lags import SIGMA, TRUTH, dispute, fitted, record, recorded, result
-from twin.case import make_case
+from twin.fit.case import make_case
 from twin.fit.channel import chain_channel
 from twin.next.criterion import Scale, bound, distance, lay_out, predict, refitted
-from twin.simulate import Start, simulate_recording
+from twin.replay.simulate import Start, simulate_recording
 
 EXPERIMENT = make_experiment("random", {"count": 20, "dwell_max_s": 4.0, "seed": 3})
 SCALE = Scale("chain", SIGMA, 0.1)

@@ -18,7 +18,8 @@ from tests.twin.next.two_lags import dispute, record, result
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause, EffectTest
-from twin.effect import Scales
+from twin.judge.verdict import Judgement
+from twin.model.effect import Scales
 from twin.next.candidates import library
 from twin.next.coverage import blind_spots
 from twin.next.criterion import Scale
@@ -28,7 +29,6 @@ from twin.next.limits import limits_of
 from twin.next.propose import Proposal, _below_noise, _settled, propose
 from twin.next.search import best_experiment
 from twin.next.sensors import advice
-from twin.verdict import Judgement
 
 
 def judged(*names: str, probability: float = 0.6, confusable: tuple[tuple[str, ...], ...] = ()) -> Judgement:
