@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from hal.counted import counted
 from hal.errors import BadInput
@@ -14,13 +13,11 @@ from logs.layout import is_run_folder
 from logs.long_form import by_tag
 from logs.recording import CommandTiming, DataNote, FloatArray, Recording
 from logs.roles import NEEDED, QUANTITY, ROLES, Column, Role, assign, parse_pairs, split_header
+from logs.run import Run, read_run
 from logs.spoken import WRITTEN
 from logs.table import Table, read_table
 from logs.times import unwrap
 from logs.units import HOUSE_UNIT, PERCENT, Conversion, conversion, plain_name
-
-if TYPE_CHECKING:
-    from logs.run import Run
 
 
 def load_recording(
@@ -41,13 +38,16 @@ def load_recording(
         raise BadInput(f"{folder}: a folder without run.json is no run; name a run folder, a CSV or a Parquet file")
     if mapping or units:
         raise BadInput(f"{folder}: a recorded run knows its columns and units; leave out --map and --units")
-    from logs.run import read_run
-
     return recording_of_run(read_run(folder), command_timing)
 
 
 def recording_of_run(run: Run, command_timing: CommandTiming = "before") -> Recording:
-    """The samples of a run. Raises: `BadInput` when a needed column is missing or no sample is usable."""
+    """The samples of a run in house units, checked and with data-quality notes; of an imported file, as read.
+
+    Raises: `BadInput` when a needed column is missing or no sample is usable.
+    """
+    if run.imported is not None:
+        return run.imported
     where = str(run.path)
     if run.rows < 2:
         held = counted(run.rows, "sample")

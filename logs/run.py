@@ -96,17 +96,6 @@ class Run:
         time_s = self.columns.get("time_s")
         return float(time_s[-1] - time_s[0]) if time_s is not None and time_s.size else 0.0
 
-    def recording(self) -> Recording:
-        """The samples as analysis wants them, in psi and in (or percent), checked and with data-quality notes.
-
-        Raises: `BadInput` when a needed column is missing, or the record holds no usable sample.
-        """
-        if self.imported is not None:
-            return self.imported
-        from logs.load import recording_of_run
-
-        return recording_of_run(self)
-
 
 def read_run(path: Path) -> Run:
     """Reads a run folder, also one that is being written, was cut off by a crash or lost its tail.

@@ -47,9 +47,10 @@ def command(run: str, as_json: bool, full: bool, mapping: str | None, units: str
 def _quality(run: Run) -> list[tuple[str, str, int, int | None]]:
     """The data-quality notes, or the sentence why the samples are no use."""
     from hal.errors import BadInput
+    from logs.load import recording_of_run
 
     try:
-        notes = run.recording().notes
+        notes = recording_of_run(run).notes
     except BadInput as error:
         return [(str(error), "not usable for analysis", 0, None)]
     return [(note.what, note.handled, note.rows, note.first_row) for note in notes]

@@ -14,6 +14,7 @@ import pytest
 
 from hal.errors import BadInput
 from logs.layout import EVENTS, SAMPLES, START, STOP
+from logs.load import recording_of_run
 from logs.recording import FloatArray
 from logs.run import read_run
 from logs.writer import RunWriter
@@ -114,7 +115,7 @@ def test_killed_before_the_first_batch_there_are_columns_and_no_rows(tmp_path: P
     run = read_run(tmp_path / "run")
     assert run.rows == 0 and run.units["pressure_psi"] == "psi" and run.status == "crash"
     with pytest.raises(BadInput, match="holds 0 samples"):
-        run.recording()
+        recording_of_run(run)
 
 
 def test_a_stop_document_that_says_nonsense_is_no_stop_document(tmp_path: Path) -> None:
