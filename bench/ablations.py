@@ -38,8 +38,8 @@ from logs.recording import Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
 from sim_device.sealed import Label
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
+from twin.search.search_rules import SearchRules
 
 COARSE_IN = TRAVEL_IN / 256
 OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14)

@@ -35,9 +35,9 @@ from sim_device.physics.catalog import imperfections, make_physics, parameters
 from sim_device.physics.imperfection import Imperfection
 from sim_device.physics.offline import record
 from sim_device.sealed import GRADES, Cause, Label
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.model.insert import inserted_from
+from twin.search.search_rules import SearchRules
 
 SHARES = {"effect": 0.50, "none": 0.14, "parameter": 0.12, "effects": 0.14, "outsider": 0.10}
 TEMPERATURES = (1.0, 3.0, 10.0, 30.0, 100.0, 300.0)

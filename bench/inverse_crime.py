@@ -26,7 +26,6 @@ from app.interval import wilson
 from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.sealed import Cause, Label
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.channel import predict_reading, pressure_fine
 from twin.fit.numbers import NUMBERS, nominal, retuned
@@ -34,6 +33,7 @@ from twin.fit.trial import make_trial
 from twin.model.catalog import effects
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.search_rules import SearchRules
 
 SHARES = {"effect": 0.6, "parameter": 0.2, "none": 0.2}
 POSITION_IN, PRESSURE_PSI = 6e-4, 4e-3

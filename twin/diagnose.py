@@ -10,7 +10,6 @@ from logs.recording import FloatArray, Recording
 from twin.choose.felt import felt_only
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import StageResult, judge
 from twin.choose.switches import switch_notes, without_switches
 from twin.choose.trim import spoken
@@ -53,6 +52,7 @@ from twin.record.pieces import cut_at_holes
 from twin.record.recorder import recorder_note
 from twin.record.sensing import Sensing, sense
 from twin.report.statement import signed
+from twin.search.search_rules import SearchRules
 
 Progress = Callable[[str, float], None]
 Prepared = tuple[Case, Case, Sensing, tuple[Inserted, ...]]

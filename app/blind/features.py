@@ -8,9 +8,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from twin.choose.decide import Decision
-    from twin.choose.findings import Findings
     from twin.diagnose import Outcome
     from twin.fit.fitting import Fit
+    from twin.search.findings import Findings
 
 _KEPT = 8
 

@@ -115,10 +115,10 @@ def _diagnosed(order: Order, record: Recording) -> Outcome:
     """The diagnosis, on disk before anything is unsealed."""
     from app.blind.designs import margin
     from control.design import save_design
-    from twin.choose.search_rules import SearchRules
     from twin.diagnose import Settings, diagnose
     from twin.diagnosis import write_diagnosis
     from twin.model.insert import inserted_from
+    from twin.search.search_rules import SearchRules
 
     design = _baseline(order.family)
     settings = Settings(search=SearchRules(threads=1), margin=margin(order.family))

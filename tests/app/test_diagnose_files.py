@@ -12,8 +12,8 @@ import pytest
 from app.cli import run
 from tests.app.test_diagnose import columns_of, write
 from tests.control.toy_valve import Toy, random_steps, record
-from twin.choose.search import Searcher
 from twin.files import FILES
+from twin.search.search import Searcher
 
 STALE = "of an earlier diagnosis"
 

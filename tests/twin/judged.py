@@ -7,7 +7,6 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import StageResult, judge
 from twin.choose.weigh import Weights
 from twin.diagnose import Settings
@@ -17,6 +16,7 @@ from twin.model.insert import inserted_from
 from twin.model.plant import Plant
 from twin.record.sensing import sense
 from twin.replay.simulate import simulate_recording
+from twin.search.search_rules import SearchRules
 
 #: A diagnosis that stops at two causes, which takes a third of the time where nothing explains all.
 UP_TO_TWO = Settings(search=SearchRules(most=2))

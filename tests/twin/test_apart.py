@@ -11,7 +11,6 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import SIGMA, trial_of
-from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
 from twin.fit.case import make_case
 from twin.fit.channel import position_channel, predict_reading
@@ -21,6 +20,7 @@ from twin.model.effect import Coefficients
 from twin.model.place import Place
 from twin.model.plant import Inserted, Plant, reading_response
 from twin.model.timegrid import make_grid
+from twin.search.candidates import effect_causes
 
 FORM = effect("lvdt_drift").form("apart")
 VALUES = tuple(0.001 * k for k in range(1, KNOTS + 1))

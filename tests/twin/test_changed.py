@@ -10,7 +10,6 @@ import pytest
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record, judged
-from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
 from twin.fit.case import make_case
 from twin.fit.channel import position_channel
@@ -21,6 +20,7 @@ from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.insert import inserted_from, plant_of
 from twin.model.plant import Inserted, Plant
+from twin.search.candidates import effect_causes
 
 LAG = effect("sensor_lag").form("first_order")
 

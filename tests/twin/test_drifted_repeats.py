@@ -12,7 +12,6 @@ import pytest
 from logs.recording import Recording
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin import diagnose as module
-from twin.choose.search_rules import SearchRules
 from twin.choose.weigh import Weights
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.fit.space import Cause
@@ -21,6 +20,7 @@ from twin.judge.repeatable import differ_for_a_cause, leaves_what_rests
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.noise.model import SignalNoise, estimate_noise
+from twin.search.search_rules import SearchRules
 
 DRIFT = Inserted("friction_drift", effect("friction_drift").form("linear"), (3e-5,))
 LOOSE = Inserted("linkage_lost_motion", effect("linkage_lost_motion").form("play"), (0.003,))

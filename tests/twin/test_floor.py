@@ -14,7 +14,6 @@ from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from tests.twin.trials import SIGMA, staircase, trial_of
 from twin.choose.decide import _likely_floor, decide
-from twin.choose.findings import Findings
 from twin.choose.plainer import plainer
 from twin.choose.rules import DecisionRules
 from twin.choose.stages import StageResult
@@ -32,6 +31,7 @@ from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
 from twin.replay.simulate import simulate_recording
+from twin.search.findings import Findings
 from twin.where.closure import rms
 
 RULES = DecisionRules()

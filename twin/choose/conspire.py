@@ -13,13 +13,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.choose.candidates import effect_causes
 from twin.choose.decide import FREE, Decision
 from twin.choose.in_place import in_place_of
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, conspiracy, stands_in
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+from twin.search.candidates import effect_causes
 
 
 def without_conspiracy(decision: Decision, rules: DecisionRules, weights: Weights) -> Decision:

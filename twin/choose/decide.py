@@ -9,14 +9,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.claims import size_of
-from twin.choose.findings import Findings
 from twin.choose.plainer import effects_of, instead_of, plainer
-from twin.choose.reform import bent_by, lays_open, spares_numbers
 from twin.choose.rules import DecisionRules
 from twin.events.teeth import Slips
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
+from twin.search.claims import size_of
+from twin.search.findings import Findings
+from twin.search.reform import bent_by, lays_open, spares_numbers
 
 #: How far a number may be accused to have moved where nobody believes what they all moved together.
 _UNBELIEVED = 0.05

@@ -8,13 +8,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.choose.witness import driven_by_model, left_of_position
 from twin.fit.case import Case
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
+from twin.search.candidates import effect_causes
 
 #: Mean squared error of the position, noise = 1, that leaves nothing to ask; and by how much less, and what share at
 #: most, another form has to leave of it.

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from twin.choose.findings import Findings
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit
+from twin.search.findings import Findings
 
 #: Share of the squared moves of the design numbers in re-tuning that an idle effect does not spare them.
 _SPARED = 0.5

@@ -10,13 +10,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from twin.choose.claims import same_claim, size_of
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.numbers import nominal
 from twin.fit.space import SHIFTED, Cause, make_space
 from twin.model.effect import Scales
+from twin.search.claims import same_claim, size_of
 
 #: Share of the gap that the effects leave without the numbers; and at least so many times the noise variance.
 _SHARE, _LEAST = 0.25, 0.5

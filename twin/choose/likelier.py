@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from twin.choose.claims import hollow, size_of
 from twin.choose.decide import Decision
-from twin.choose.needless import rival_in
+from twin.search.claims import hollow, size_of
+from twin.search.needless import rival_in
 
 
 def likelier(decision: Decision) -> Decision | None:

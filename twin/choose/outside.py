@@ -8,12 +8,12 @@ from __future__ import annotations
 from dataclasses import replace
 
 from twin.choose.decide import Decision
-from twin.choose.needless import LEAVES, rival_in
 from twin.choose.plainer import effects_of
 from twin.choose.rules import DecisionRules
 from twin.choose.trim import dropped
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
+from twin.search.needless import LEAVES, rival_in
 
 #: Error, noise = 1, beyond which wrong numbers alone do not explain a gap, however large: the model is what the design
 #: says, and no form of theirs can be at fault. Of 75 that were right on the last checks and plants the worst left 1.32;

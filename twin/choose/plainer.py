@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from twin.choose.claims import hollow, size_of
-from twin.choose.findings import Findings
 from twin.choose.idle import idle
 from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
+from twin.search.claims import hollow, size_of
+from twin.search.findings import Findings
 
 #: Noise variances, however large the gap: what numbers leave beyond that has another cause, for they have no form that
 #: could be at fault. Of 75 that were right the worst left 1.74 in all (docs/calibration.md).

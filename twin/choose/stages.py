@@ -14,8 +14,6 @@ from twin.choose.decide import Decision, decide
 from twin.choose.form_by_stem import formed_by_stem
 from twin.choose.lean import leaning
 from twin.choose.rules import DecisionRules
-from twin.choose.search import Searcher
-from twin.choose.search_rules import SearchRules
 from twin.choose.unbent import unbent
 from twin.choose.witness import (
     driven_by_model,
@@ -33,6 +31,8 @@ from twin.fit.numbers import nominal, retuned
 from twin.fit.smooth import BELIEVING, CAREFUL, noise_left, smoothed_pressure
 from twin.fit.trial import Trial
 from twin.model.plant import Plant
+from twin.search.search import Searcher
+from twin.search.search_rules import SearchRules
 
 #: What is left of the pressure's noise by smoothing is known to this share of itself.
 NOISE_UNSURE = 0.25

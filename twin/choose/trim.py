@@ -10,23 +10,23 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 from twin.choose.alike import alike
-from twin.choose.claims import size_of
 from twin.choose.decide import Decision, with_numbers
-from twin.choose.findings import Findings
 from twin.choose.idle import idle
-from twin.choose.needless import rival_in
 from twin.choose.plainer import effects_of, slack_of
 from twin.choose.reach import moved_square
 from twin.choose.rules import DecisionRules
 from twin.choose.weigh import Weights, weigh
 from twin.fit.fitting import Fit
 from twin.model.catalog import effects
+from twin.search.claims import size_of
+from twin.search.findings import Findings
+from twin.search.needless import rival_in
+from twin.search.search_rules import SLIGHT
 
 #: A cause that is, with its twins, less likely than this is not named, unless one rival and it have as much as `BOTH`.
 LIKELY, BOTH = 0.45, 0.85
-#: Mean squared residual of the design, noise = 1, up to which a signal passes for healthy: 1.3 times the noise.
-SLIGHT = 1.69
-#: Likewise of a pressure, where a wrong number is all that its error needs: twice the noise.
+#: Mean squared residual of a pressure up to which it passes for healthy, where a wrong number is all that its error
+#: needs: twice the noise.
 _SLIGHT_NUMBER = 4.0
 #: Times the noise: a gap as large is no small rest, and an answer that is silent about it is none.
 _PLAIN = 10.0

@@ -11,8 +11,8 @@ from dataclasses import replace
 
 from twin.choose.decide import Decision
 from twin.choose.lean import as_designed
-from twin.choose.needless import LEAVES
 from twin.model.effect import Scales
+from twin.search.needless import LEAVES
 
 
 def unbent(decision: Decision, scales: Scales) -> Decision:

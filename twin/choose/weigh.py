@@ -12,13 +12,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from twin.choose.claims import hollow, size_of
 from twin.choose.decide import Decision
 from twin.choose.idle import idle
 from twin.choose.plainer import slack_of
 from twin.choose.rules import DecisionRules
 from twin.choose.usual import log_usual
 from twin.fit.fitting import Fit
+from twin.search.claims import hollow, size_of
 
 #: Half of all machines have a design number as designed, to the first of these (relative standard deviations), the
 #: other half to the second; what is off by no more than so many standard errors is not off.

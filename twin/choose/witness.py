@@ -11,7 +11,6 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import DataNote
-from twin.choose.trim import SLIGHT
 from twin.fit.case import Case
 from twin.fit.channel import position_channel, pressure_fine
 from twin.fit.fitting import Fit, fit, starts_of
@@ -19,6 +18,7 @@ from twin.fit.in_steps import in_steps
 from twin.fit.space import ACCUSED_SPREAD, make_space
 from twin.fit.trial import Trial
 from twin.model.plant import Plant
+from twin.search.search_rules import SLIGHT
 
 #: Of what the re-tuned design leaves of the position when it is driven by the reading: the most that it leaves when
 #: driven by the model; and by how many noise variances that is less, at least. By how many it may leave more, and

@@ -17,9 +17,7 @@ import numpy as np
 
 from logs.recording import DataNote, FloatArray
 from logs.spoken import HOUSE, Spoken
-from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
-from twin.choose.reform import curved
 from twin.choose.stages import StageResult
 from twin.events.teeth import Pushes, Slips, Teeth, Valve, fixed_in_place, pushes, teeth, together
 from twin.fit.case import Case
@@ -27,6 +25,8 @@ from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, evaluated, fit
 from twin.fit.space import Cause, Space, cause_starts, make_space
 from twin.model.plant import Plant
+from twin.search.candidates import effect_causes
+from twin.search.reform import curved
 
 #: Teeth that are many, and the share of the way that is jumped in all that a model without slips may jump. Fewer are
 #: enough where what slips leaves no more than a share of the gap's squares.

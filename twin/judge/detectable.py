@@ -16,7 +16,6 @@ from functools import partial
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
 from twin.diagnosis import EffectTest
 from twin.fit.case import Case
@@ -30,6 +29,7 @@ from twin.judge.upheld import EXPLAINED, HARDLY
 from twin.model.catalog import effects as catalogued
 from twin.model.effect import Effect, Form, Parameter, Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.candidates import effect_causes
 
 _STEPS, _THREADS = 5, 2
 #: A size is near enough when what it shows is within these bounds of what is needed.

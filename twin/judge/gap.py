@@ -9,7 +9,6 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.choose.decide import Decision
-from twin.choose.reform import lays_open
 from twin.choose.stages import StageResult
 from twin.fit.case import Case
 from twin.fit.channel import chain_channel
@@ -18,6 +17,7 @@ from twin.fit.space import make_space
 from twin.judge.heldout import errors_on_channel, is_erratic, predict_heldout
 from twin.judge.verdict import Judgement
 from twin.record.sensing import Sensing
+from twin.search.reform import lays_open
 from twin.where.closure import rms
 
 Progress = Callable[[str, float], None]

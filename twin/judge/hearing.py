@@ -9,7 +9,6 @@ from logs.recording import DataNote
 from twin.choose.decide import Decision
 from twin.choose.likelier import likelier
 from twin.choose.outside import outside_of
-from twin.choose.reform import spares_numbers
 from twin.choose.stages import StageResult
 from twin.choose.trim import dropped, silent, spoken
 from twin.choose.weigh import Weights
@@ -22,6 +21,7 @@ from twin.judge.tolerance import forgiven, needless_number, within_tolerance
 from twin.judge.upheld import DOUBTFUL, doubted, explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.judge.verdict import Judgement, pronounce
 from twin.record.sensing import Sensing
+from twin.search.reform import spares_numbers
 from twin.where.closure import rms
 
 Progress = Callable[[str, float], None]

@@ -11,8 +11,6 @@ import numpy as np
 
 from hal.errors import BadInput
 from logs.recording import DataNote, Recording
-from twin.choose.score import make_yardstick
-from twin.choose.search import Searcher
 from twin.choose.stages import driven_about
 from twin.choose.weigh import Weights
 from twin.diagnosis import Diagnosis, Gap, Ranked
@@ -26,6 +24,8 @@ from twin.noise.copies import used_once
 from twin.noise.model import NoiseModel, estimate_noise
 from twin.ready.timing import Slack
 from twin.record.admit import admit
+from twin.search.score import make_yardstick
+from twin.search.search import Searcher
 from twin.where.closure import gap
 from twin.where.isolability import describe
 

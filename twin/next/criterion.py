@@ -70,7 +70,7 @@ class Distance:
 
     @property
     def gain(self) -> float:
-        """Expected gain in log-evidence: the error variance is profiled out, as in `twin/choose/score.py`."""
+        """Expected gain in log-evidence: the error variance is profiled out, as in `twin/search/score.py`."""
         return 0.5 * self.worth * float(np.log1p(self.squared / self.worth))
 
 

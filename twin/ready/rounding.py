@@ -14,7 +14,6 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import DataNote, FloatArray, Recording
-from twin.choose.candidates import ROUNDS_BY
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.trial import make_trial
 from twin.model.catalog import effect
@@ -22,6 +21,7 @@ from twin.model.plant import Inserted, Plant
 from twin.noise.blurred import resultant
 from twin.noise.lattice import missing_codes, rounding_bias
 from twin.record.sensing import Sensing
+from twin.search.candidates import ROUNDS_BY
 
 _STEP_S = 0.1
 #: How much smaller the squared error has to be; or how near, in half steps, the mean error to half a step.

@@ -10,8 +10,8 @@ from control.design import DesignModel
 from logs.recording import Recording
 from sim_device.physics.catalog import make_physics
 from sim_device.physics.offline import record
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
+from twin.search.search_rules import SearchRules
 
 
 @pytest.mark.thorough

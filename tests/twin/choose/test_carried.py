@@ -8,16 +8,16 @@ import pytest
 from control.design import DesignModel
 from tests.twin.trials import SIGMA, staircase, trial_of
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
 from twin.choose.lean import leaning
 from twin.choose.rules import DecisionRules
-from twin.choose.score import yardstick_for
 from twin.fit.channel import position_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 
 SPREAD = effect("distributed_hysteresis")
 LAG = effect("additional_lag")

@@ -14,13 +14,13 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record, judged
-from twin.choose.score import inflation, make_yardstick, student_log_likelihood, whitening_filter
 from twin.choose.weigh import Weights, weigh
 from twin.explain import typical_values
 from twin.fit.least_squares import descend, minimise
 from twin.model.catalog import effects
 from twin.model.effect import Effect
 from twin.model.plant import Inserted, Plant
+from twin.search.score import inflation, make_yardstick, student_log_likelihood, whitening_filter
 
 #: One that is tried each time; the others take seconds each.
 QUICK = "nonlinear_spring"

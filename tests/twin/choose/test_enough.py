@@ -9,13 +9,13 @@ import pytest
 
 from tests.twin.judged import a_record, judged
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.search import Searcher
 from twin.fit.channel import position_channel
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.search import Searcher
 
 
 def test_one_that_explains_all_by_bent_numbers_does_not_end_the_search_either() -> None:

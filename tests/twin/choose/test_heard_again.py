@@ -7,7 +7,6 @@ import pytest
 from control.design import DesignModel
 from tests.twin.straying import straying
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import driven_about, judge
 from twin.choose.witness import driven_by_model, gauge_wanders, left_of_position, still_denied
 from twin.fit.case import Case, make_case
@@ -16,6 +15,7 @@ from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.search_rules import SearchRules
 
 STICTION = effect("stiction")
 STICKS = Inserted("stiction", STICTION.form("target_sticks"), (0.3, 0.004))

@@ -10,7 +10,6 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
-from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
 from twin.choose.lean import _Leaning, leaning
 from twin.choose.plainer import instead_of, plainer
@@ -26,6 +25,7 @@ from twin.judge.verdict import Judgement
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.candidates import effect_causes
 
 
 def with_lag(design: DesignModel, lag_s: float = 0.3) -> Plant:

@@ -14,7 +14,6 @@ from logs.recording import Recording
 from tests.twin.judged import a_record, judged
 from tests.twin.test_floor import findings_of
 from twin.choose.decide import Decision, _said, _worth, decide, with_numbers
-from twin.choose.findings import Findings
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
 from twin.diagnosis import Cause as Named
@@ -27,6 +26,7 @@ from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
 from twin.noise.model import estimate_noise
 from twin.record.sensing import Sensing, sense
+from twin.search.findings import Findings
 
 D = DesignModel()
 NUMBERS = ("offset", "compliance", "tau")

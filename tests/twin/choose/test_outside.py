@@ -11,7 +11,6 @@ from scipy.signal import lti, step
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import driven_about
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.fit.case import make_case
@@ -24,6 +23,7 @@ from twin.model.effect import Scales
 from twin.model.place import Place
 from twin.model.plant import Inserted, Plant, pressure_response, reading_response
 from twin.model.timegrid import make_grid
+from twin.search.search_rules import SearchRules
 
 DESIGN = DesignModel()
 ALIKE = "a damping that grows with the speed, the same both ways"

@@ -11,11 +11,11 @@ from scipy.ndimage import gaussian_filter1d
 from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import drive_by_measured, judge, pressure_doubt
 from twin.fit.case import make_case
 from twin.fit.channel import position_channel
 from twin.model.plant import Plant
+from twin.search.search_rules import SearchRules
 
 
 def doubt(wander_psi: float) -> float:

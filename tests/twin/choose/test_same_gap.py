@@ -12,7 +12,6 @@ import pytest
 from tests.twin.test_floor import findings_of
 from twin.choose.alike import alike
 from twin.choose.decide import Decision
-from twin.choose.reform import spares_numbers
 from twin.diagnosis import Cause as Named
 from twin.diagnosis import Ranked
 from twin.fit.fitting import Fit
@@ -22,6 +21,7 @@ from twin.judge.upheld import upheld
 from twin.judge.verdict import Judgement
 from twin.model.effect import Scales
 from twin.record.sensing import Sensing
+from twin.search.reform import spares_numbers
 
 #: All weigh the same.
 EVEN: Any = SimpleNamespace(phi=1.0, score=lambda _: 0.0)

@@ -10,8 +10,6 @@ import pytest
 from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
-from twin.choose.score import yardstick_for
 from twin.choose.stages import StageResult, driven_about
 from twin.choose.switches import switch_notes, without_switches
 from twin.diagnose import diagnose
@@ -22,6 +20,8 @@ from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 
 RINGS = ("distributed_hysteresis", "two_rings", (0.63, 0.146, 0.97))
 HARDLY = ("spring_asymmetry", "at_stem", (-1e-6,))

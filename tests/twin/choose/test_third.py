@@ -7,8 +7,6 @@ import pytest
 
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
-from twin.choose.score import yardstick_for
 from twin.choose.weigh import Weights, weigh
 from twin.fit.channel import position_channel
 from twin.fit.fitting import fit
@@ -16,6 +14,8 @@ from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 
 THREE = (("lvdt_calibration", "zero", 0.02), ("linkage_lost_motion", "play", 0.03), ("lvdt_drift", "linear", 2e-5))
 

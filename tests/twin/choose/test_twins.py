@@ -10,7 +10,6 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
-from twin.choose.claims import together
 from twin.choose.decide import Decision
 from twin.choose.rules import DecisionRules
 from twin.choose.twins import _more_usual, settled, with_usual_twins
@@ -20,6 +19,7 @@ from twin.fit.space import Cause
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.replay.simulate import simulate_recording
+from twin.search.claims import together
 
 
 @cache

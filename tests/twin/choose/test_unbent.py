@@ -10,8 +10,6 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
-from twin.choose.score import yardstick_for
 from twin.choose.unbent import unbent
 from twin.fit.case import make_case
 from twin.fit.channel import pressure_channel
@@ -20,6 +18,8 @@ from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 
 
 def supply_of(form: str, *values: float) -> Inserted:

@@ -13,13 +13,10 @@ from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.straying import read, slow, straying
 from twin.choose.decide import Decision, decide
-from twin.choose.findings import Findings
 from twin.choose.form_by_stem import formed_by_stem
 from twin.choose.rules import DecisionRules
-from twin.choose.score import make_yardstick
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import driven_about, judge
-from twin.choose.trim import SLIGHT, spoken
+from twin.choose.trim import spoken
 from twin.choose.weigh import Weights
 from twin.choose.witness import driven_by_model, gauge_lies, gauge_wanders, left_of_position, missed_of_position
 from twin.diagnose import diagnose
@@ -32,6 +29,9 @@ from twin.judge.verdict import strays
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.replay.simulate import simulate_recording
+from twin.search.findings import Findings
+from twin.search.score import make_yardstick
+from twin.search.search_rules import SLIGHT, SearchRules
 
 DESIGN = DesignModel()
 GAUGE_PSI = 0.03

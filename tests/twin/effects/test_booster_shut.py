@@ -7,15 +7,15 @@ import pytest
 
 from tests.twin.judged import a_record
 from tests.twin.kernels.test_booster import D, plant, pressure
-from twin.choose import search
-from twin.choose.candidates import effect_causes
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.channel import pressure_channel
 from twin.fit.trial import make_trial
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search import search
+from twin.search.candidates import effect_causes
+from twin.search.search_rules import SearchRules
 
 #: A pilot with an overlap [psi], alone and with two fifths less air behind it than was known.
 SHUT = {"overlap_and_chamber": (0.1, -0.4), "overlap": (0.1,)}

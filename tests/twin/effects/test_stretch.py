@@ -10,10 +10,10 @@ import pytest
 from logs.recording import FloatArray
 from tests.twin.judged import a_record
 from tests.twin.loops import FRICTIONS, PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.model.plant import Plant
 from twin.replay.simulate import Start, simulate_recording
+from twin.search.search_rules import SearchRules
 
 FORMS = {
     "stretch": ((0.05, 20.0, 0.4), (0.05,), (20.0,)),

@@ -10,7 +10,6 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record, judged
-from twin.choose.candidates import effect_causes
 from twin.fit.case import make_case
 from twin.fit.channel import pressure_channel
 from twin.model.catalog import effect
@@ -18,6 +17,7 @@ from twin.model.effect import Scales
 from twin.model.place import Place
 from twin.model.plant import Inserted, Plant, pressure_response
 from twin.model.timegrid import make_grid
+from twin.search.candidates import effect_causes
 
 D = DesignModel()
 EFFECT = effect("supply_saturation")

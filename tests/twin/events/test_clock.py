@@ -13,7 +13,6 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from tests.twin.judged import a_record
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import judge
 from twin.choose.weigh import Weights
 from twin.events.clock import clock_of
@@ -24,6 +23,7 @@ from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.record.sensing import sense
 from twin.replay.simulate import simulate_recording
+from twin.search.search_rules import SearchRules
 
 
 def rows(count: int, row_s: float, jitter: float, dice: np.random.Generator) -> FloatArray:

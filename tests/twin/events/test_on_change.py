@@ -12,8 +12,6 @@ from hypothesis import strategies as st
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record
-from twin.choose.candidates import effect_causes
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Outcome, Settings, diagnose
 from twin.events.on_change import on_change
 from twin.events.refresh import freshness
@@ -27,6 +25,8 @@ from twin.noise.model import estimate_noise
 from twin.record.held_noise import as_reported
 from twin.record.sensing import sense
 from twin.replay.simulate import Start, simulate_recording
+from twin.search.candidates import effect_causes
+from twin.search.search_rules import SearchRules
 
 DESIGN = DesignModel()
 BAND_IN = 0.02

@@ -14,10 +14,7 @@ from hypothesis.extra.numpy import arrays
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.toy_valve import TRAVEL, Toy, record
-from twin.choose.candidates import effect_causes
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
-from twin.choose.score import yardstick_for
 from twin.choose.stages import StageResult, driven_about
 from twin.diagnose import diagnose
 from twin.events.teeth import Teeth, Valve, fixed_in_place, pushes, teeth, turns
@@ -27,6 +24,9 @@ from twin.fit.fitting import evaluated
 from twin.fit.space import make_space
 from twin.judge.by_teeth import by_slips, slipping, slips_note
 from twin.noise.model import estimate_noise
+from twin.search.candidates import effect_causes
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 
 FloatArray = npt.NDArray[np.float64]
 DT, SIGMA = 0.1, 7e-4

@@ -9,7 +9,6 @@ import pytest
 
 from tests.twin.judged import a_record
 from tests.twin.loops import D
-from twin.choose.polish import polished
 from twin.choose.stages import driven_about
 from twin.fit.case import make_case
 from twin.fit.channel import Channel, position_channel
@@ -19,6 +18,7 @@ from twin.fit.larger_steps import in_larger_steps
 from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.polish import polished
 
 
 def found(name: str, form: str, truth: tuple[float, ...], seed: int) -> Fit:

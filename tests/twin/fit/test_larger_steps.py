@@ -10,9 +10,6 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose import search
-from twin.choose.screen import Prospect
-from twin.choose.search import Searcher
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.larger_steps import in_larger_steps
@@ -21,6 +18,9 @@ from twin.fit.space import Cause, Space, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search import search
+from twin.search.screen import Prospect
+from twin.search.search import Searcher
 
 CREEP = effect("creep").form("one_tail")
 

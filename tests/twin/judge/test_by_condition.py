@@ -11,7 +11,6 @@ from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import StageResult, judge
 from twin.diagnosis import Gap
 from twin.fit.case import make_case
@@ -20,6 +19,7 @@ from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.ready import thin
 from twin.ready.tuned import retuned_fit
+from twin.search.search_rules import SearchRules
 
 CREEP = Plant(DesignModel(), (Inserted("creep", effect("creep").form("one_tail"), (0.1, 20.0)),))
 FLOOR_IN = 0.0004

@@ -13,7 +13,6 @@ import twin.judge.detectable
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import StageResult
 from twin.diagnose import Settings, diagnose
 from twin.diagnosis import EffectTest
@@ -25,6 +24,7 @@ from twin.judge.tolerance import TOLERANCE
 from twin.model.catalog import effect, effects
 from twin.model.plant import Inserted, Plant
 from twin.record.sensing import smallest_seen
+from twin.search.search_rules import SearchRules
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,6 @@ import pytest
 from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.case import Case, make_case
 from twin.fit.channel import Channel, chain_channel
@@ -17,6 +16,7 @@ from twin.fit.space import Cause, make_space
 from twin.judge.heldout import fold_weights, refitted
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.search_rules import SearchRules
 
 DESIGN = DesignModel()
 

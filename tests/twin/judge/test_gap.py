@@ -6,10 +6,10 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.search_rules import SearchRules
 
 
 @pytest.mark.thorough

@@ -15,8 +15,6 @@ from logs.recording import Recording
 from tests.twin.judged import a_record
 from tests.twin.test_floor import RULES, findings_of
 from twin.choose.decide import Decision, decide
-from twin.choose.findings import Findings
-from twin.choose.score import make_yardstick
 from twin.choose.stages import StageResult
 from twin.choose.weigh import Weights
 from twin.diagnosis import Cause as Named
@@ -31,6 +29,8 @@ from twin.judge.verdict import Judgement
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.record.sensing import Sensing
+from twin.search.findings import Findings
+from twin.search.score import make_yardstick
 
 DESIGN = DesignModel()
 

@@ -8,12 +8,12 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.judged import a_record
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.numbers import retuned
 from twin.judge.moved import moved_numbers
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.search_rules import SearchRules
 
 DESIGN = DesignModel()
 

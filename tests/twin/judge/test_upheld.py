@@ -9,7 +9,6 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.claims import hollow
 from twin.diagnosis import Cause as Named
 from twin.diagnosis import Estimate, Ranked
 from twin.fit.channel import position_channel
@@ -22,6 +21,7 @@ from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
 from twin.record.sensing import Sensing
+from twin.search.claims import hollow
 
 NAMED = Judgement("effect", (Named("creep", "actuator", 0.9, None, {}),), (), (("creep", "stiction"),))
 NOTHING_SEEN = Sensing((), {}, 0.0)

@@ -12,9 +12,7 @@ from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO, a_record
 from tests.twin.trials import DESIGN, staircase, trial_of
 from twin.choose.decide import decide
-from twin.choose.findings import Findings
 from twin.choose.rules import DecisionRules
-from twin.choose.score import make_yardstick
 from twin.choose.stages import StageResult, driven_about
 from twin.diagnose import diagnose
 from twin.fit.case import make_case
@@ -24,6 +22,8 @@ from twin.fit.space import make_space
 from twin.judge.wander import comes_and_goes, wander
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, pressure_response, reading_response, stem_response
+from twin.search.findings import Findings
+from twin.search.score import make_yardstick
 
 
 def wandering(size_psi: float) -> Recording:

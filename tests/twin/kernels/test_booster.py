@@ -13,8 +13,6 @@ from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from logs.units import atmosphere
 from tests.twin.judged import a_record
-from twin.choose.candidates import effect_causes
-from twin.choose.search_rules import SearchRules
 from twin.diagnose import Settings, diagnose
 from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_channel
 from twin.fit.trial import make_trial
@@ -28,6 +26,8 @@ from twin.model.plant import Inserted, Plant, pressure_response
 from twin.model.timegrid import make_grid
 from twin.replay.chain import chain_response
 from twin.replay.simulate import Start, simulate_recording
+from twin.search.candidates import effect_causes
+from twin.search.search_rules import SearchRules
 
 D = DesignModel()
 TIME_S = np.arange(0.0, 80.05, 0.1)

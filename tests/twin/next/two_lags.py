@@ -11,7 +11,6 @@ from control.design import DesignModel
 from control.experiment import Experiment
 from control.experiment_catalog import make_experiment
 from logs.recording import Recording
-from twin.choose.score import inflation
 from twin.fit.case import Case, make_case
 from twin.fit.channel import Channel, chain_channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -20,6 +19,7 @@ from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
 from twin.next.rivals import Dispute, rival_of
 from twin.replay.simulate import Start, simulate_recording
+from twin.search.score import inflation
 
 SIGMA = 0.0006
 TRUTH = Plant(DesignModel(), (Inserted("dead_time", effect("dead_time").forms[0], (0.1,)),))

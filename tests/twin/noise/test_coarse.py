@@ -14,8 +14,6 @@ from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import a_record
 from twin.choose.rules import DecisionRules
-from twin.choose.score import make_yardstick, student_log_likelihood
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import judge
 from twin.choose.weigh import Weights
 from twin.choose.witness import driven_by_model, gauge_wanders, left_of_position
@@ -29,6 +27,8 @@ from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
 from twin.noise.coarse import Coarse, coarse, flicker
 from twin.record.sensing import sense
+from twin.search.score import make_yardstick, student_log_likelihood
+from twin.search.search_rules import SearchRules
 
 STEP_IN = 0.03
 LATE = Inserted("additional_lag", effect("additional_lag").form("behind_stem"), (0.25,))

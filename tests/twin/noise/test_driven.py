@@ -9,8 +9,6 @@ import pytest
 
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.choose.decide import Decision
-from twin.choose.findings import Findings
-from twin.choose.score import yardstick_for
 from twin.diagnosis import Cause as Named
 from twin.fit.channel import Channel, chain_channel, position_channel
 from twin.fit.fitting import Fit, fit
@@ -23,6 +21,8 @@ from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
 from twin.record.sensing import Sensing
+from twin.search.findings import Findings
+from twin.search.score import yardstick_for
 from twin.where.closure import rms
 
 STUCK = Judgement("effect", (Named("stiction", "actuator", 0.9, None, {}),), (), ())

@@ -10,9 +10,7 @@ import pytest
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
 from tests.twin.judged import a_record
-from twin.choose.candidates import effect_causes
 from twin.choose.rules import DecisionRules
-from twin.choose.search_rules import SearchRules
 from twin.choose.stages import judge
 from twin.diagnose import Settings, _prepared, diagnose
 from twin.events.refresh import fresh_rows, freshness, new_only, refreshed_together
@@ -25,6 +23,8 @@ from twin.noise.model import estimate_noise
 from twin.ready.thin import look_at
 from twin.record.held_noise import noise_of_refreshed
 from twin.replay.simulate import simulate_recording
+from twin.search.candidates import effect_causes
+from twin.search.search_rules import SearchRules
 
 AS_SEEN = Inserted("stale_samples", effect("stale_samples").form("as_seen"), ())
 _SIGNALS = ("time_s", "command", "position")

@@ -11,7 +11,6 @@ from control.design import DesignModel
 from logs.recording import Recording
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import staircase, trial_of
-from twin.choose.candidates import effect_causes
 from twin.diagnose import diagnose
 from twin.fit.case import make_case
 from twin.fit.channel import chain_channel, predict_reading
@@ -22,6 +21,7 @@ from twin.model.plant import Inserted, Plant
 from twin.ready.thin import look_at
 from twin.record.places import places
 from twin.replay.simulate import Start, simulate_recording
+from twin.search.candidates import effect_causes
 
 DESIGN = DesignModel()
 DRIFTS = [

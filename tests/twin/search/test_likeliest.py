@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from control.design import DesignModel
-from twin.choose.likeliest import likeliest
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause, Scales, make_space
 from twin.model.catalog import effect
 from twin.model.plant import Plant
+from twin.search.likeliest import likeliest
 
 
 def found(name: str, form: str, z: float, mse: float) -> Fit:

@@ -15,10 +15,8 @@ from tests.twin.judged import a_record
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.choose import trim
 from twin.choose.decide import Decision
-from twin.choose.needless import without_needless
 from twin.choose.outside import inside
 from twin.choose.rules import DecisionRules
-from twin.choose.search import Searcher
 from twin.choose.trim import spoken
 from twin.choose.weigh import Weights
 from twin.fit.channel import position_channel
@@ -27,6 +25,8 @@ from twin.fit.space import Cause
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.needless import without_needless
+from twin.search.search import Searcher
 
 CALIBRATION = effect("ep_calibration")
 RULES = DecisionRules()

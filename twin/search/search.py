@@ -14,19 +14,6 @@ from typing import TypeVar
 
 import numpy as np
 
-from twin.choose.candidates import effect_causes, number_causes
-from twin.choose.claims import best_forms, same_claim, some_of_each, suspected, together
-from twin.choose.findings import Findings
-from twin.choose.likeliest import by_score, likeliest
-from twin.choose.needless import without_needless
-from twin.choose.nested import beyond_retuning, nested
-from twin.choose.pairs import Pair, promising_pairs
-from twin.choose.polish import polished
-from twin.choose.reform import Beyond, bent_by, better_of_each, exactly, in_laws, in_other_forms, least_left
-from twin.choose.score import yardstick_for
-from twin.choose.screen import Prospect, make_screen, prospects
-from twin.choose.search_rules import SearchRules
-from twin.choose.slips import several_slips
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.larger_steps import Look, in_larger_steps
@@ -34,6 +21,19 @@ from twin.fit.retuning import retuned
 from twin.fit.space import Cause, make_space
 from twin.model.effect import Scales
 from twin.model.plant import Plant
+from twin.search.candidates import effect_causes, number_causes
+from twin.search.claims import best_forms, same_claim, some_of_each, suspected, together
+from twin.search.findings import Findings
+from twin.search.likeliest import by_score, likeliest
+from twin.search.needless import without_needless
+from twin.search.nested import beyond_retuning, nested
+from twin.search.pairs import Pair, promising_pairs
+from twin.search.polish import polished
+from twin.search.reform import Beyond, bent_by, better_of_each, exactly, in_laws, in_other_forms, least_left
+from twin.search.score import yardstick_for
+from twin.search.screen import Prospect, make_screen, prospects
+from twin.search.search_rules import SearchRules
+from twin.search.slips import several_slips
 
 Progress = Callable[[str, float], None]
 _T = TypeVar("_T")

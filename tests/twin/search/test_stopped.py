@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from control.design import DesignModel
-from tests.twin.choose.test_pairs import channel_of
+from tests.twin.search.test_pairs import channel_of
 from tests.twin.trials import DESIGN
-from twin.choose.search import Searcher
-from twin.choose.search_rules import SearchRules
 from twin.fit.fitting import fit
 from twin.fit.space import Cause, make_space
 from twin.model.effect import Scales
 from twin.model.plant import Plant
+from twin.search.search import Searcher
+from twin.search.search_rules import SearchRules
 
 
 def test_who_stops_the_search_does_not_wait_for_what_its_threads_have_before_them(
@@ -31,7 +31,7 @@ def test_who_stops_the_search_does_not_wait_for_what_its_threads_have_before_the
         by_then[0] = begun[0]
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("twin.choose.search.fit", counted)
+    monkeypatch.setattr("twin.search.search.fit", counted)
     searcher = Searcher(channel, Plant(DesignModel()), Scales(), SearchRules(threads=2), stop)
     none = make_space(Plant(DesignModel()), (), channel.numbers, Scales())
     parent = fit(channel, none, [np.zeros(len(channel.numbers))])

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from tests.twin.choose.test_screen import cause
+from tests.twin.search.test_screen import cause
 from tests.twin.trials import DESIGN
-from twin.choose.reform import least_left
-from twin.choose.screen import Prospect
 from twin.fit.space import make_space
 from twin.model.effect import Scales
 from twin.model.plant import Plant
+from twin.search.reform import least_left
+from twin.search.screen import Prospect
 
 
 def test_of_each_pair_of_causes_those_forms_are_fitted_that_promise_to_leave_least() -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from twin.choose.claims import hollow, size_of
-from twin.choose.score import Yardstick
 from twin.fit.channel import Channel
 from twin.fit.fitting import Fit
+from twin.search.claims import hollow, size_of
+from twin.search.score import Yardstick
 
 
 @dataclass(frozen=True, slots=True, eq=False)

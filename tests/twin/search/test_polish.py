@@ -10,7 +10,6 @@ import pytest
 
 from logs.recording import Recording
 from tests.twin.loops import D, plant
-from twin.choose.polish import polished
 from twin.fit.case import make_case
 from twin.fit.channel import Channel, pressure_channel
 from twin.fit.fitting import Fit, fit, starts_of
@@ -19,6 +18,7 @@ from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Plant
 from twin.replay.simulate import simulate_recording
+from twin.search.polish import polished
 
 BAND_PSI, SIGMA_PSI = 0.28, 0.008
 

@@ -7,7 +7,6 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.screen import make_screen, prospects
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.larger_steps import in_larger_steps
@@ -15,6 +14,7 @@ from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.screen import make_screen, prospects
 
 
 def cause(name: str, form: str) -> Cause:

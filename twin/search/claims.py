@@ -8,11 +8,11 @@ import numpy as np
 from scipy.special import chdtri
 
 from logs.recording import FloatArray
-from twin.choose.needless import without_needless
-from twin.choose.score import yardstick_for
-from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED, Cause
+from twin.search.needless import without_needless
+from twin.search.score import yardstick_for
+from twin.search.screen import Prospect
 
 #: How often chance alone leaves sizes nearer to nothing than what counts as a size.
 _SURE = 0.95

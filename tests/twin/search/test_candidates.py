@@ -9,11 +9,11 @@ import pytest
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.candidates import effect_causes
 from twin.fit.channel import Channel, position_channel
 from twin.fit.space import Scales, make_space
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant
+from twin.search.candidates import effect_causes
 
 DOWN_IN = -0.01
 

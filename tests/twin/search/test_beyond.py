@@ -5,14 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from control.design import DesignModel
-from tests.twin.choose.test_pairs import cause, channel_of
+from tests.twin.search.test_pairs import cause, channel_of
 from tests.twin.trials import DESIGN
-from twin.choose.search import Searcher
-from twin.choose.search_rules import SearchRules
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import Cause, make_space
 from twin.model.effect import Scales
 from twin.model.plant import Plant
+from twin.search.search import Searcher
+from twin.search.search_rules import SearchRules
 
 BASE = Plant(DesignModel())
 

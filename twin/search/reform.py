@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.choose.screen import Prospect
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause
 from twin.model.effect import Form
+from twin.search.screen import Prospect
 
 #: A hypothesis, and what one more cause makes of it.
 Beyond = tuple[Fit, list[tuple[Cause, ...]]]

@@ -10,13 +10,13 @@ from scipy.signal import lfilter
 
 from tests.twin.choose.test_outside import a_fit
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose import search
-from twin.choose.claims import best_forms
 from twin.fit.channel import position_channel
 from twin.fit.space import Cause
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search import search
+from twin.search.claims import best_forms
 
 BENT = effect("lvdt_nonlinearity")
 TABLE, BOW = (Cause(BENT.name, BENT, BENT.form(name)) for name in ("table", "bow"))

@@ -11,14 +11,14 @@ import pytest
 from control.design import DesignModel
 from tests.twin.judged import a_record, judged
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.candidates import number_causes
-from twin.choose.slips import several_slips
 from twin.fit.channel import position_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.candidates import number_causes
+from twin.search.slips import several_slips
 
 OFF = DesignModel(compliance=0.205, a1=8.95, a2=5.80, tau_s=2.2, rate_limit=0.14)
 EVERYTHING = {"deadband", "offset", "compliance", "tau", "rate_limit"}

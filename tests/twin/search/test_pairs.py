@@ -11,14 +11,8 @@ from hypothesis import strategies as st
 
 from control.design import DesignModel
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.claims import together
 from twin.choose.decide import decide
-from twin.choose.pairs import _best_of_each, _gains, promising_pairs
-from twin.choose.reform import better_of_each, in_laws, in_other_forms
 from twin.choose.rules import DecisionRules
-from twin.choose.screen import make_screen
-from twin.choose.search import Searcher
-from twin.choose.search_rules import SearchRules
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.larger_steps import in_larger_steps
@@ -26,6 +20,12 @@ from twin.fit.space import Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.claims import together
+from twin.search.pairs import _best_of_each, _gains, promising_pairs
+from twin.search.reform import better_of_each, in_laws, in_other_forms
+from twin.search.screen import make_screen
+from twin.search.search import Searcher
+from twin.search.search_rules import SearchRules
 
 
 def cause(name: str, form: str) -> Cause:

@@ -15,9 +15,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.choose.screen import Screen
 from twin.fit.fitting import Fit
 from twin.fit.space import Cause, Space, make_space
+from twin.search.screen import Screen
 
 #: How far a start is scaled at the most.
 _LARGEST = 4.0

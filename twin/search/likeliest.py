@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from twin.choose.claims import hollow
-from twin.choose.score import yardstick_for
 from twin.fit.fitting import Fit
+from twin.search.claims import hollow
+from twin.search.score import yardstick_for
 
 
 def by_score(level: Sequence[Fit], use: np.ndarray) -> list[Fit]:

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
-from twin.choose.nested import beyond_retuning, cost, nested
 from twin.fit.channel import Channel, position_channel
 from twin.fit.fitting import Fit, fit
 from twin.fit.space import ACCUSED_SPREAD, Cause, make_space
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant
+from twin.search.nested import beyond_retuning, cost, nested
 
 
 def channel_of(name: str, form: str, *values: float) -> Channel:
