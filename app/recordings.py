@@ -42,12 +42,11 @@ def from_open(
     Where the design is the defaults, whose travel is known, less than that travel is not for guessing: a sensor's zero
     may be what has slipped. Raises: `BadInput` for recordings in different units.
     """
-    from control.identify_starts import FAR
-    from control.identify_zero import zeroed
+    from control.identify_zero import OFF, zeroed
 
     every = [*recordings, *golden]
     common_units(every)
-    done = zeroed(every, 1.0 if not golden and _of_the_defaults(every) else FAR)
+    done = zeroed(every, 1.0 if not golden and _of_the_defaults(every) else OFF)
     return done[: len(recordings)], done[len(recordings) :]
 
 

@@ -144,6 +144,11 @@ def refit_separate(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> 
     return _refine(tracks, fit.numbers, separate, rounds=12, play_starts=fit.play_starts), separate
 
 
+def refitted(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> ValveFit:
+    """The same numbers fitted to other tracks, from where a fit has ended."""
+    return _refine(tracks, fit.numbers, freedom, rounds=12, play_starts=fit.play_starts)
+
+
 def jacobian(tracks: Sequence[Track], fit: ValveFit, freedom: Freedom) -> FloatArray:
     """d prediction / d fitted number, shape (good rows, numbers + tracks); the last columns are the play's starts."""
     values = np.concatenate((freedom.pack(fit.numbers), fit.play_starts))
@@ -172,8 +177,8 @@ def _refine(
     problem = Problem(lambda values: _residual(tracks, values, freedom), low, high, steps, soft)
     found, _ = minimise(problem, start, rounds=rounds)
     rest = _residual(tracks, found, freedom)
-    cost = float(np.sum(np.minimum(rest**2, 25.0 * _variance(rest))))
     count = len(freedom.names)
+    cost = float(np.sum(np.minimum(rest**2, 25.0 * _variance(rest))))
     return ValveFit(freedom.unpack(found[:count]), found[count:], cost)
 
 

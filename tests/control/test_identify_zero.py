@@ -25,7 +25,7 @@ def off(recording: Recording, zero_in: float) -> Recording:
     return replace(recording, position=recording.position + zero_in)
 
 
-@pytest.mark.parametrize("zero_in", [2.0, 0.2, -0.28])
+@pytest.mark.parametrize("zero_in", [2.0, 0.2, 0.06, -0.05, -0.28])
 @pytest.mark.parametrize("measured", [True, False])
 def test_the_reading_at_the_open_stop_is_found(swept: Recording, zero_in: float, measured: bool) -> None:
     moved = off(swept if measured else without_pressure(swept), zero_in)
@@ -50,6 +50,19 @@ def test_a_stem_that_only_stays_away_has_no_zero(swept: Recording) -> None:
     away = record(TOY, 0.2 * np.arange(command.size), np.maximum(command, 9.2)).slice(200, 1200)
     assert away.position.min() > 0.25 * np.ptp(away.position)
     assert zero_of([away]) is None
+
+
+@pytest.mark.parametrize(("low", "high", "seed"), [(6.3, 10.9, 3), (6.3, 10.9, 4), (6.1, 11.5, 4), (7.0, 10.9, 4)])
+def test_a_stem_that_stays_away_by_less_has_none_either(low: float, high: float, seed: int) -> None:
+    """In the last the free fit ends far off, but what fits with a stop needs none."""
+    command = random_steps(240.0, 0.2, low=low, high=high, seed=seed)
+    away = record(TOY, 0.2 * np.arange(command.size), np.maximum(command, low)).slice(200, 1200)
+    assert away.position.min() > 0.05 * np.ptp(away.position)
+    assert zero_of([away]) is None
+
+
+def test_a_small_zero_is_left_to_the_diagnosis(swept: Recording) -> None:
+    assert zero_of([off(swept, 0.02)]) is None
 
 
 def test_less_than_what_is_asked_for_is_left_to_the_diagnosis(swept: Recording) -> None:
