@@ -107,6 +107,7 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
     from twin.diagnose import Settings, diagnose
     from twin.judge.partial import Interrupted
     from twin.model.insert import inserted_from
+    from twin.ready.identified import better_identified
     from twin.write import write_outcome
 
     outcome = None
@@ -122,9 +123,9 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
             settings = Settings(margin=margin)
             settings = replace(settings, doubt=_IDENTIFIED) if identified else settings
             outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
-            if identified and _accuses_numbers(outcome):
-                # The numbers come from this very record: they cannot be off, they were only not found well enough.
-                outcome = diagnose(recordings, replace(outcome.model, effects={}), (), settings, progress)
+            named = [cause.name for cause in outcome.diagnosis.causes]
+            if identified and (better := better_identified(named, outcome.model)) is not None:
+                outcome = diagnose(recordings, better, (), settings, progress)
             write_outcome(outcome, out, progress)
     except Interrupted as stop:
         _leave(stop.diagnosis, model, out)
@@ -165,10 +166,6 @@ def _margin(golden: Sequence[Recording], model: DesignModel) -> tuple[Margin, tu
     what = f"the design misses the healthy machine by {100.0 * margin.position / model.travel:.2g} % of travel"
     pressure = f" and {model.spoken.text(margin.pressure, model.pressure_unit, 2)}" if margin.pressure else ""
     return margin, (DataNote(f"{what}{pressure} RMS", "a cause has to explain more than that"),)
-
-
-def _accuses_numbers(outcome: Outcome) -> bool:
-    return any(cause.name.startswith("parameter:") for cause in outcome.diagnosis.causes)
 
 
 def _leave(diagnosis: Diagnosis, model: DesignModel, out: Path) -> None:
