@@ -42,7 +42,7 @@ class Weights:
     temperature: float = 10.0
     confusable: float = 0.03
     ceiling: float = 0.9
-    exact: float = 0.97
+    exact: float = 0.98
     further: float = 0.75
     third: float = 0.5
     twin_ceiling: float = 0.6

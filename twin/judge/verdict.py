@@ -24,7 +24,7 @@ from twin.record.sensing import Sensing
 MATERIAL_SHARE = 0.25
 #: Behind a converter that explains the rest, a share of the gap that needs no cause of its own.
 MINOR_SHARE = 0.02
-_EVENT_PROBABILITY = 0.97
+_EVENT_PROBABILITY = 0.98
 #: Mean squared residual, noise = 1, that false readings too small to be recognised may leave, or noise that takes
 #: readings over the edges of coarse steps: it does so with its cube, and how much of it there is hardly shows in them.
 MISSED = 4.0
