@@ -43,7 +43,9 @@ def test_the_demo_finds_what_the_readme_says(tmp_path: Path) -> None:
 
     errors = [abs(float(e)) for e in re.findall(r"│ +[\d.]+ │ +[\d.]+ │ +[+-][\d.]+ │ +([+-][\d.]+) │", shown)]
     assert len(errors) == 5
-    assert max(errors) == pytest.approx(told(r"the mean error was ([\d.]+) % of travel or less")[0], abs=0.011)
+    # where a loop with a band comes to rest depends on the last bits: 0.16 on one machine, 0.20 on others
+    [most] = told(r"the mean error was ([\d.]+) % of travel or less")
+    assert 0.5 * most < max(errors) < most + 0.011
 
     diagnosis = json.loads((tmp_path / "demo" / "sealed" / "diagnosis.json").read_text(encoding="utf-8"))
     [cause] = diagnosis["causes"]
