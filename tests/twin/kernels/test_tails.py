@@ -42,7 +42,7 @@ def sensed(record: Recording) -> Sensing:
 
 @pytest.mark.parametrize("seed", [1, 2, 3, 4])
 def test_a_heavy_tail_is_noise_and_is_said(seed: int) -> None:
-    """Without a look at the tail each of these would be drop-outs with 0.97."""
+    """Without a look at the tail each of these would be drop-outs, and surely."""
     seen = sensed(readings(True, seed=seed))
     assert seen.bad_rows[0].sum() >= 3
     assert "sensor_dropouts" not in seen.accepted
