@@ -7,6 +7,7 @@ flexible bystander always finds something in that rest.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from twin.choose.plainer import effects_of, instead_of, plainer
@@ -14,7 +15,7 @@ from twin.choose.rules import DecisionRules
 from twin.events.teeth import Slips
 from twin.fit.fitting import Fit
 from twin.fit.space import SHIFTED
-from twin.search.claims import size_of
+from twin.search.claims import EXACT, nudged, shifted, size_of
 from twin.search.findings import Findings
 from twin.search.reform import bent_by, lays_open, spares_numbers
 
@@ -22,8 +23,8 @@ from twin.search.reform import bent_by, lays_open, spares_numbers
 _UNBELIEVED = 0.05
 #: By how many unknowns a free curve exceeds a law.
 FREE = 5
-#: Mean squared residual over the floor up to which a signal is explained to its noise.
-_EXACT = 1.1
+#: Nats by which the accusation of a number has to be ahead that is bent where nothing else is left.
+_ACCUSED = 3.0
 #: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
 _SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
@@ -54,7 +55,7 @@ class Decision:
     @property
     def exact(self) -> bool:
         """Whether what was accepted leaves no more than the noise."""
-        return self.accepted.mse <= _EXACT * self.floor
+        return self.accepted.mse <= EXACT * self.floor
 
     def rest_of(self, fit: Fit) -> float:
         """What `fit` leaves of the excess over the noise, as a share of the excess before."""
@@ -83,6 +84,8 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
     accepted = _said(findings, accepted, rules)
     far = _UNBELIEVED if _imitates(accepted, rules, floor) else SHIFTED
     accepted = with_numbers(findings, accepted, rules.evidence, far)
+    if rules.within == 0.0:  # what a healthy machine differs by from its design bends numbers, too
+        accepted = _with(findings, accepted, nudged(accepted, floor), _ACCUSED)
     size = size_of(accepted)
     rest = rest_of(findings, accepted, floor)
     nothing_left = accepted.mse < rules.nothing_left * floor  # as far as the noise itself is known
@@ -95,7 +98,7 @@ def decide(findings: Findings, rules: DecisionRules, floor: float = 1.0) -> Deci
 
 def _imitates(fit: Fit, rules: DecisionRules, floor: float) -> bool:
     """Whether a hypothesis must bend the numbers beyond belief, and leaves something all the same."""
-    return bent_by(fit) > rules.believed and fit.mse > _EXACT * floor
+    return bent_by(fit) > rules.believed and fit.mse > EXACT * floor
 
 
 def _better(findings: Findings, accepted: Fit, rules: DecisionRules, floor: float) -> Fit | None:
@@ -154,7 +157,7 @@ def _said(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     A creep with two tails that are both far longer than the records is a gain that is too small, and makes the stem's
     lag its own; it leaves as little as a gain beside another lag.
     """
-    effects, moved = effects_of(fit), _moved(fit, SHIFTED)
+    effects, moved = effects_of(fit), {f"parameter:{n}" for n in shifted(fit, SHIFTED)}
     if len(fit.names) != 1 or not effects or not moved:
         return fit
     near = [
@@ -170,11 +173,6 @@ def _said(findings: Findings, fit: Fit, rules: DecisionRules) -> Fit:
     return max(near, key=findings.score) if near else fit
 
 
-def _moved(fit: Fit, far: float) -> set[str]:
-    """The design numbers, as causes, that a hypothesis moves `far`."""
-    return {f"parameter:{n}" for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > far}
-
-
 def _with_another(f: Fit, fit: Fit) -> bool:
     """Whether `f` is `fit` with another effect in the place of one cause."""
     other = len(f.names) == len(fit.names) and len(set(fit.names) - set(f.names)) == 1
@@ -186,8 +184,11 @@ def with_numbers(findings: Findings, fit: Fit, evidence: float, far: float = SHI
 
     A number that rides along as a nuisance leaves no gap to be closed by accusing it; what it pays is its prior.
     """
-    moved = _moved(fit, far)
-    own = set(fit.names)
+    return _with(findings, fit, shifted(fit, far), evidence)
+
+
+def _with(findings: Findings, fit: Fit, numbers: Sequence[str], evidence: float) -> Fit:
+    moved, own = {f"parameter:{n}" for n in numbers}, set(fit.names)
     larger = [f for f in findings.fits if own < set(f.names) and set(f.names) - own <= moved]
     best = max(larger, key=findings.score, default=None)
     if best is None or size_of(fit) == 0 or findings.score(best) - findings.score(fit) <= evidence:

@@ -45,7 +45,7 @@ class Weights:
     exact: float = 0.98
     further: float = 0.75
     third: float = 0.5
-    twin_ceiling: float = 0.6
+    twin_ceiling: float = 0.7
 
 
 @dataclass(frozen=True, slots=True)

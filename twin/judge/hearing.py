@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 
 from logs.recording import DataNote
@@ -21,6 +21,7 @@ from twin.judge.tolerance import forgiven, needless_number, within_tolerance
 from twin.judge.upheld import DOUBTFUL, doubted, explained_to_noise, nothing, shown_by_pressure, upheld
 from twin.judge.verdict import Judgement, pronounce
 from twin.record.sensing import Sensing
+from twin.search.claims import nudged
 from twin.search.reform import spares_numbers
 from twin.where.closure import rms
 
@@ -41,6 +42,12 @@ def _slight_rival(result: StageResult) -> bool:
     """Whether what explains a slight gap behind the measured pressure best is none of the known effects."""
     behind = result.decisions[1:]
     return any(outside_of(d) is not None and d.findings.none.mse < DOUBTFUL**2 * d.floor for d in behind)
+
+
+def _bends(less: Decision, more: Decision) -> bool:
+    """Whether the numbers have to do what a cause did that was taken away, or are off without being accused of it."""
+    accused = {name.removeprefix("parameter:") for name in more.names} - set(less.accepted.names)
+    return spares_numbers(more.accepted, less.accepted) or bool(accused & set(nudged(less.accepted, less.floor)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,18 +122,26 @@ class Hearing:
         self, result: StageResult, judgement: Judgement, progress: Progress, floor: float
     ) -> tuple[StageResult, Judgement, GapParts]:
         parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
-        percent = 100.0 * floor / self.case.travel
-        while idle := (
-            idle_cause(parts, judgement, result, self.case.travel, passes_for_noise(parts, percent, self.case.travel))
-            or needless_number(parts, judgement.causes, self._slight(judgement), percent)
-        ):
+        percent, kept = 100.0 * floor / self.case.travel, set[str]()
+        while idle := self._idle(result, judgement, parts, percent, kept):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
-            if any(spares_numbers(d.accepted, less.accepted) for d, less in zip(result.decisions, left, strict=True)):
-                break
+            if any(_bends(less, d) for d, less in zip(result.decisions, left, strict=True)):
+                kept.add(idle)
+                continue
             result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
             judgement = self.judgement(result)
             parts = heldout_parts(self.case, result, judgement, self.retuned, self.sensing, progress)
         return result, judgement, parts
+
+    def _idle(
+        self, result: StageResult, judgement: Judgement, parts: GapParts, percent: float, kept: Collection[str]
+    ) -> str | None:
+        """A cause that unseen data do without, and that need not be `kept`. `percent`: the noise, of travel."""
+        asked = replace(parts, without={name: error for name, error in parts.without.items() if name not in kept})
+        healthy = passes_for_noise(parts, percent, self.case.travel)
+        return idle_cause(asked, judgement, result, self.case.travel, healthy) or needless_number(
+            asked, judgement.causes, self._slight(judgement), percent
+        )
 
     def _dropped(self, decision: Decision, name: str) -> Decision:
         """The decision without a cause; the others are fitted without it where they never were."""

@@ -16,6 +16,15 @@ from twin.search.screen import Prospect
 
 #: How often chance alone leaves sizes nearer to nothing than what counts as a size.
 _SURE = 0.95
+#: Mean squared residual over the floor up to which a signal is explained to its noise.
+EXACT = 1.1
+#: Relative move of a design number from which it is suspected beside laws that explain a signal to its noise; and the
+#: standard deviations of its prior that it has to be off by.
+NUDGED, _DEVIATIONS = 0.03, 3.0
+#: Numbers of a law, at the most.
+_LAW = 5
+#: A steady gauge shows every little that it is off by.
+_CONVERTER = "ep_tau"
 
 
 def some_of_each(ranked: Sequence[Prospect], causes: int, forms: int) -> list[Prospect]:
@@ -88,10 +97,35 @@ def suspected(fit: Fit) -> list[tuple[Cause, ...]]:
     """The design numbers that an effect hypothesis had to move far: each one, and all of them."""
     if all(c.effect is None for c in fit.space.causes):
         return []
-    moved = [n for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > SHIFTED]
+    moved = sorted(set(shifted(fit, SHIFTED)) | set(nudged(fit)), key=fit.space.numbers.index)
     far = [Cause(f"parameter:{n}") for n in moved if f"parameter:{n}" not in fit.names]
     far = [c for c in far if not same_claim(fit, c)]
     return [*((c,) for c in far), *([tuple(far)] if len(far) > 1 else [])]
+
+
+def shifted(fit: Fit, far: float) -> list[str]:
+    """The design numbers that a hypothesis moves `far`."""
+    return [n for n, z in zip(fit.space.numbers, fit.z, strict=False) if abs(z) > far]
+
+
+def nudged(fit: Fit, floor: float = 1.0) -> list[str]:
+    """The design numbers that laws have to move clearly, if less than `SHIFTED`, to leave no more than the noise.
+
+    A wrong form bends numbers and leaves something. Where nothing is left, and no twin of another shape could have bent
+    them, they are off themselves. `floor`: mean squared residual of the true model.
+    """
+    if fit.mse > EXACT * floor or not all(_lawful(c) for c in fit.space.causes):
+        return []
+    moved = zip(fit.space.numbers, fit.z, fit.space.spreads, strict=False)
+    return [n for n, z, spread in moved if abs(z) > max(NUDGED, _DEVIATIONS * spread) and n != _CONVERTER]
+
+
+def _lawful(cause: Cause) -> bool:
+    """Whether a cause is a law of few numbers that nothing else resembles, or a number."""
+    if cause.effect is None or cause.form is None:
+        return True
+    curve = cause.form.free or bool(cause.form.outside) or len(cause.form.parameters) > _LAW
+    return not (curve or cause.effect.erratic or cause.effect.same_as.get(cause.form.name))
 
 
 def same_claim(parent: Fit, cause: Cause) -> bool:
