@@ -18,7 +18,16 @@ from twin.judge.by_teeth import by_slips, slips_note
 from twin.judge.gap import GapParts, fitted_without, heldout_parts, idle_cause, passes_for_noise
 from twin.judge.heldout import tied_note
 from twin.judge.tolerance import forgiven, needless_number, within_tolerance
-from twin.judge.upheld import DOUBTFUL, doubted, explained_to_noise, nothing, shown_by_pressure, upheld
+from twin.judge.upheld import (
+    DOUBTFUL,
+    doubted,
+    explained_to_noise,
+    nothing,
+    shown_beyond_steps,
+    shown_by_pressure,
+    shows_beyond_steps,
+    upheld,
+)
 from twin.judge.verdict import Judgement, pronounce
 from twin.record.sensing import Sensing
 from twin.search.claims import nudged
@@ -44,10 +53,17 @@ def _slight_rival(result: StageResult) -> bool:
     return any(outside_of(d) is not None and d.findings.none.mse < DOUBTFUL**2 * d.floor for d in behind)
 
 
-def _bends(less: Decision, more: Decision) -> bool:
-    """Whether the numbers have to do what a cause did that was taken away, or are off without being accused of it."""
-    accused = {name.removeprefix("parameter:") for name in more.names} - set(less.accepted.names)
-    return spares_numbers(more.accepted, less.accepted) or bool(accused & set(nudged(less.accepted, less.floor)))
+def _missed(less: Decision, more: Decision) -> bool:
+    """Whether a cause that was taken away is missed, whatever unseen data say.
+
+    The numbers have to do what it did, or are off without being accused of it, or steps of a reading hide what it does
+    there.
+    """
+    if less is more:
+        return False
+    accused = {name.removeprefix("parameter:") for name in more.names}
+    bent = spares_numbers(more.accepted, less.accepted) or bool(accused & set(nudged(less.accepted, less.floor)))
+    return bent or shows_beyond_steps(more, less.accepted)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,7 +141,7 @@ class Hearing:
         percent, kept = 100.0 * floor / self.case.travel, set[str]()
         while idle := self._idle(result, judgement, parts, percent, kept):
             left = tuple(self._dropped(d, idle) if idle in d.names else d for d in result.decisions)
-            if any(_bends(less, d) for d, less in zip(result.decisions, left, strict=True)):
+            if any(_missed(less, d) for d, less in zip(result.decisions, left, strict=True)):
                 kept.add(idle)
                 continue
             result = replace(result, decisions=spoken(left, self.weights, bool(self.sensing.accepted)))
@@ -158,7 +174,8 @@ class Hearing:
         if forgiven(parts, judgement.causes, self._slight(judgement), floor):
             return nothing(parts, judgement, self.disturbed)
         measured, wandering = self.case.sigma_p is not None, result.decisions[-1].floor
-        told = (measured, wandering, self.disturbed, explained_to_noise(result), shown_by_pressure(result))
+        shown = (*shown_by_pressure(result), *shown_beyond_steps(result))
+        told = (measured, wandering, self.disturbed, explained_to_noise(result), shown)
         return upheld(parts, judgement, floor, self.sensing, *told, self.swings)
 
     def _slight(self, judgement: Judgement) -> list[str]:

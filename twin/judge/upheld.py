@@ -11,6 +11,7 @@ from twin.choose.decide import Decision
 from twin.choose.stages import StageResult
 from twin.choose.trim import doubtful
 from twin.diagnosis import Cause, Verdict
+from twin.fit.fitting import Fit
 from twin.judge.gap import GapParts, retuning_pays
 from twin.judge.remainder import CLEAR, FREE, SLIGHT, leaves_too_much, no_better_than_numbers
 from twin.judge.verdict import Judgement, verdict_of
@@ -148,6 +149,22 @@ def shown_by_pressure(result: StageResult) -> tuple[str, ...]:
     """
     pressure = [d for d in result.decisions if d.findings.channel.name == "pressure" and d.explained]
     return tuple(name for d in pressure if d.findings.none.mse > _shows(d) ** 2 * d.floor for name in d.names)
+
+
+def shown_beyond_steps(result: StageResult) -> tuple[str, ...]:
+    """Causes for which a reading in sharp steps speaks that no rounding explains, however small beside a step.
+
+    Errors on unseen rows are those of the reading, rounding and all, in which what moves the stem by less than a step
+    may not show; what lies beyond half a step is all that a fit to such a reading counts.
+    """
+    behind = result.decisions[-1]
+    return behind.names if shows_beyond_steps(behind, behind.findings.none) else ()
+
+
+def shows_beyond_steps(decision: Decision, less: Fit) -> bool:
+    """Whether a reading in sharp steps speaks against a smaller hypothesis than the accepted one."""
+    steps = decision.findings.channel.half > 0.0 and decision.slips is None
+    return bool(steps and decision.exact and less.mse > CLEAR**2 * decision.floor)
 
 
 def _shows(decision: Decision) -> float:

@@ -12,6 +12,9 @@ _LEAST_LEVELS = 8
 _FEWEST, _FEW_OFTEN, _FEW_FIT = 5, 20, 0.1
 _FIT = 0.12  # rms distance from the lattice in steps: values without a lattice have 0.29
 _MOST = 200_000
+#: A level that is no chance occurs so often. Readings at others are false: so few of all, and of them so few beside
+#: another one, as no stem that moves from one dwell to the next would have.
+_USUAL, _RARE, _RUNNING = 3, 0.05, 0.1
 #: How far off a lattice a level is a stranger to it [steps], and how many of all levels may be; one always.
 _STRANGE, _STRANGERS = 0.1, 0.02
 #: Readings of each of the codes around one that never occurs, from which that is no chance (0.1 % by Poisson).
@@ -24,13 +27,29 @@ def lattice_step(values: FloatArray) -> float | None:
     Tolerates values rounded once more on the way into a file, and a few values off the lattice (false readings).
     """
     known = values[np.isfinite(values)][:_MOST]
-    levels = np.unique(known)
+    levels, code, counts = np.unique(known, return_inverse=True, return_counts=True)
+    step, usual = _step_of(levels, known.size), counts >= _USUAL
+    if not _false_alone(usual[code]):
+        return step
+    coarse = _step_of(levels[usual], known.size)  # false readings may be more levels than a coarse display has
+    return coarse if step is None or (coarse is not None and coarse > step) else step
+
+
+def _false_alone(usual: npt.NDArray[np.bool_]) -> bool:
+    """Whether hardly any reading, and hardly ever two running, is at a level where no other reading is."""
+    rare = ~usual
+    running = np.count_nonzero(rare[1:] & rare[:-1])
+    return bool(0 < np.count_nonzero(rare) <= _RARE * rare.size and running <= _RUNNING * np.count_nonzero(rare))
+
+
+def _step_of(levels: FloatArray, readings: int) -> float | None:
+    """The step of the lattice on which sorted levels lie, that so many readings have; None where there is none."""
     if levels.size < _FEWEST:
         return None
     gaps = np.diff(levels)
     gaps = gaps[gaps > 1e-9 * max(float(np.abs(levels).max()), 1e-300)]
     if gaps.size < _LEAST_LEVELS - 1:
-        return _of_few(gaps) if gaps.size >= _FEWEST - 1 and known.size >= _FEW_OFTEN * levels.size else None
+        return _of_few(gaps) if gaps.size >= _FEWEST - 1 and readings >= _FEW_OFTEN * levels.size else None
     candidates = sorted((float(np.quantile(gaps, q, method="nearest")) for q in (0.0, 0.02, 0.1, 0.5)), reverse=True)
     for candidate in candidates:
         step = _fitted(gaps, candidate)

@@ -11,7 +11,7 @@ from tests.twin.choose.test_numbers_and_others import a_fit, caused, real
 from twin.choose.decide import decide
 from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
-from twin.judge.hearing import _bends
+from twin.judge.hearing import _missed
 from twin.search.claims import nudged, suspected
 
 
@@ -58,6 +58,6 @@ def test_unseen_data_that_do_without_the_accusation_do_not_without_the_number() 
     with_it, without = (
         decide(real(80.0, *fits), DecisionRules()) for fits in (((alone, 0.0), (both, 8.0)), ((alone, 0.0),))
     )
-    assert _bends(without, with_it)
+    assert _missed(without, with_it)
     as_designed = sure(1.02, "position_dependent_friction", "spot", {})
-    assert not _bends(decide(real(80.0, (as_designed, 0.0)), DecisionRules()), with_it)
+    assert not _missed(decide(real(80.0, (as_designed, 0.0)), DecisionRules()), with_it)
