@@ -25,6 +25,8 @@ _UNBELIEVED = 0.05
 FREE = 5
 #: Nats by which the accusation of a number has to be ahead that is bent where nothing else is left.
 _ACCUSED = 3.0
+#: The share of what is a trifle beside a gap that is none where it was all that was left.
+_EXACT_TRIFLE = 0.2
 #: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
 _SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
@@ -206,10 +208,11 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     left = max(small.mse - floor, 0.0)
     significant = findings.score(large) - findings.score(small) > rules.evidence
     # three causes are rare: what a third removes of a small rest is what a form that is not quite true had left
-    # ... and so is the little that a second one removes beside a large gap
+    # ... and so is the little that a second one removes beside a large gap, the less so if that leaves nothing
     # ... but for a number, of which no form can be at fault: what it clearly leaves is somebody else's
     numbers = bool(small.space.causes) and not effects_of(small)
-    trifle = 0.0 if numbers and small.mse > rules.quiet * floor else rules.trifle
+    trifle = (_EXACT_TRIFLE if large.mse <= EXACT * floor else 1.0) * rules.trifle
+    trifle = 0.0 if numbers and small.mse > rules.quiet * floor else trifle
     tidy = gain > max(rules.complete * left, trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves
     spares = spares_numbers(large, small)

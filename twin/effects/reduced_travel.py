@@ -37,10 +37,16 @@ def _open(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...
     return _reached(records, scales, closed=False)
 
 
-def _missing(doc: str) -> tuple[Parameter]:
+def _both(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
+    """Both stops just within the furthest that was read, or one of them nearly where it should be."""
+    low, high = _open(records, scales)[0], _closed(records, scales)[0]
+    return [(*low, *high), (0.005, *high), (*low, 0.005)]
+
+
+def _missing(doc: str, name: str = "missing") -> tuple[Parameter]:
     return (
         Parameter(
-            name="missing",
+            name=name,
             kind="fraction",
             lower=-0.2,
             upper=0.8,
@@ -67,6 +73,22 @@ def _upper_hit(c: Coefficients, values: Sequence[float]) -> None:
 def _lower_hit(c: Coefficients, values: Sequence[float]) -> None:
     c.valve[V_HARD_LOW] = values[0] * c.design.travel
     c.valve[V_LOW] -= max(-values[0], 0.0) * c.design.travel
+
+
+def _both_stops(c: Coefficients, values: Sequence[float]) -> None:
+    _lower(c, values[:1])
+    _upper(c, values[1:])
+
+
+def _both_hit(c: Coefficients, values: Sequence[float]) -> None:
+    _lower_hit(c, values[:1])
+    _upper_hit(c, values[1:])
+
+
+_ENDS = (
+    *_missing("fraction of travel missing at the open end", "missing_open"),
+    *_missing("fraction of travel missing at the closed end", "missing_closed"),
+)
 
 
 def _seat(doc: str) -> tuple[Parameter, Parameter]:
@@ -105,14 +127,17 @@ EFFECT = Effect(
     name="reduced_travel",
     stage="actuator",
     claim="An end stop is not where the design says.",
-    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower); hit: only x is held, "
-    "so the stem meets the stop at speed; seat: the compliance beyond where the stop begins is give times the design's",
+    equations="x and w held in 0..(1 - missing) travel (upper), missing travel..travel (lower), or both; "
+    "hit: only x is held, so the stem meets the stop at speed; "
+    "seat: the compliance beyond where the stop begins is give times the design's",
     source="Bartys, Patton, Syfert, de las Heras, Quevedo, Control Eng. Practice 14 (2006) 577 (DAMADICS valve faults)",
     forms=(
         Form("upper_stop", _missing("fraction of travel missing at the closed end"), _upper, _closed),
         Form("lower_stop", _missing("fraction of travel missing at the open end"), _lower, _open),
         Form("upper_stop_hit", _missing("fraction of travel missing at the closed end"), _upper_hit, _closed),
         Form("lower_stop_hit", _missing("fraction of travel missing at the open end"), _lower_hit, _open),
+        Form("both_stops", _ENDS, _both_stops, _both),
+        Form("both_stops_hit", _ENDS, _both_hit, _both),
         Form("upper_seat", _seat("fraction of travel within which the closed end's seat is pressed in"), _upper_seat),
         Form("lower_seat", _seat("fraction of travel within which the open end's seat is pressed in"), _lower_seat),
     ),

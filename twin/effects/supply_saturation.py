@@ -83,6 +83,10 @@ def _subsonic(c: Coefficients, values: Sequence[float]) -> None:
     c.ep[[EP_CLIP, EP_SUBSONIC]] = values
 
 
+def _starved(c: Coefficients, values: Sequence[float]) -> None:
+    c.ep[[EP_CLIP, EP_SUBSONIC]] = values[0], -values[1]
+
+
 _WIDTH = Parameter(
     name="width",
     kind="fraction",
@@ -124,6 +128,13 @@ _KNEE = Parameter(
     scale=0.5,
     doc="what is missing of the pressure at which the command is the supply, divided by ln 2",
     size=False,
+)
+_SPAN = replace(
+    _KNEE,
+    name="span",
+    upper=8.0,
+    starts=(0.4, 1.2),
+    doc="last pressures below it, over which the flow falls to none",
 )
 _COSINE = Parameter(
     name="cosine",
@@ -198,6 +209,7 @@ EFFECT = Effect(
     equations="dp/dt = (min(u, supply) - p) / tau; cut_off: dp/dt = (u - p) / tau and p <= supply, "
     "and through a booster only what ISO 6358 lets flow from that supply; "
     "subsonic: where it rises, dp/dt = (u - p) / tau min(1, width flow(p, supply)), flow over choked flow (ISO 6358); "
+    "starved: where it rises, dp/dt = (u - p) / tau min(1, (supply - p) / span); "
     "sinking: likewise with supply - s, ds/dt = draw max(dp/dt, 0) - s / refill (a tank behind a restriction); "
     "sinking_cut_off: the same supply, with dp/dt = (u - p) / tau and p <= supply - s; "
     "soft: dp/dt = (v - p) / tau, v = -knee ln(exp(-u / knee) + exp(-supply / knee)) (a regulator that runs out of "
@@ -211,6 +223,7 @@ EFFECT = Effect(
         Form("cut_off", (_SUPPLY,), _clip),
         Form("subsonic", (_SUPPLY, _WIDTH), _subsonic),
         Form("soft", (_SUPPLY, _KNEE), _soft),
+        Form("starved", (_SUPPLY, _SPAN), _starved),
         Form("swinging", _WAVE, _swings, _swung),
         Form("swinging_cut_off", _WAVE, _swings_and_cuts, _swung),
         Form("sinking", (_SUPPLY, _DRAW, _REFILL), _sinks),

@@ -53,17 +53,26 @@ def _edged_step(error: float, edge: float, within: float, beyond: float, h: floa
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _given(p: float, c: FloatArray) -> float:
+    """Share of the lag's flow that a weak supply gives at a pressure: by ISO 6358, or falling evenly to none over the
+    last -EP_SUBSONIC below the supply."""
+    if c[EP_SUBSONIC] < 0.0:
+        even: float = min(1.0, max(0.0, (c[EP_CLIP] - p) / -c[EP_SUBSONIC]))
+        return even
+    absolute = c[EP_ATMOSPHERE] - c[EP_AMBIENT]
+    choked: float = min(1.0, c[EP_SUBSONIC] * inflow(p + absolute, c[EP_CLIP] + absolute))
+    return choked
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _let_through(p: float, v: float, steps: float, c: FloatArray) -> float:
     """Share of the lag's flow that a weak supply gives, on the mean over a step; it is `steps` lags long without it."""
-    absolute, clip = c[EP_ATMOSPHERE] - c[EP_AMBIENT], c[EP_CLIP]
-    first = min(1.0, c[EP_SUBSONIC] * inflow(p + absolute, clip + absolute))
+    clip, first = c[EP_CLIP], _given(p, c)
     share: float = first
     for _ in range(3):
         middle = min(clip, v - (v - p) * np.exp(-0.5 * steps * share))
         end = min(clip, v - (v - p) * np.exp(-steps * share))
-        half_on = min(1.0, c[EP_SUBSONIC] * inflow(middle + absolute, clip + absolute))
-        at_end = min(1.0, c[EP_SUBSONIC] * inflow(end + absolute, clip + absolute))
-        share = (first + 4.0 * half_on + at_end) / 6.0
+        share = (first + 4.0 * _given(middle, c) + _given(end, c)) / 6.0
     return share
 
 
@@ -95,7 +104,7 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     if mode == 4.0 and error <= c[EP_BAND]:
         return p
     rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
-    if v > p and c[EP_SUBSONIC] > 0.0:
+    if v > p and c[EP_SUBSONIC] != 0.0:
         rate *= _let_through(p, v, h * rate, c)
     elif v < p and c[EP_WANES] > 0.0:
         rate = _waned(p, v, h, rate, c)

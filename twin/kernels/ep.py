@@ -196,10 +196,12 @@ def _delayed(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, dead_
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _banded(values: FloatArray, band: float, hold: bool, start: float, out: FloatArray) -> None:
-    """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows."""
+    """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows.
+
+    The first value was in force before the first row: what stood at `start` has seen it.
+    """
     held = start
-    out[0] = held
-    for i in range(1, values.size):
+    for i in range(values.size):
         u = values[i]
         if not hold:
             held = max(u - band, min(u + band, held))

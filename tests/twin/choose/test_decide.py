@@ -50,6 +50,14 @@ def test_a_second_cause_is_no_trifle_beside_the_gap(gap: float, wanted: bool) ->
     assert _worth(findings, fitted(1, 2.56), fitted(2, 1.26), DecisionRules(), 1.0) is wanted
 
 
+@pytest.mark.parametrize(("gap", "wanted"), [(67_000.0, True), (300_000.0, False)])
+def test_where_nothing_else_is_left_less_of_the_gap_is_a_trifle(gap: float, wanted: bool) -> None:
+    """Behind a filter of five seconds a local friction moves the stem by five times the noise."""
+    findings: Any = SimpleNamespace(none=fitted(0, gap), score=lambda one: -100.0 * one.mse)
+    assert _worth(findings, fitted(1, 22.3), fitted(2, 0.91), DecisionRules(), 1.0) is wanted
+    assert not _worth(findings, fitted(1, 22.3), fitted(2, 1.3), DecisionRules(), 1.0)  # a rest of the form, perhaps
+
+
 @pytest.mark.parametrize(
     ("mse", "first", "wanted"),
     [

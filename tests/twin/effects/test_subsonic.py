@@ -40,6 +40,23 @@ def test_it_fills_as_the_flow_through_a_port_does(goal_psi: float, width: float)
     assert got.max() <= supply_psi
 
 
+@pytest.mark.parametrize(("goal_psi", "span_psi"), [(11.0, 1.0), (12.4, 2.5), (15.0, 0.8)])
+def test_a_supply_whose_flow_falls_evenly_to_none(goal_psi: float, span_psi: float) -> None:
+    supply_psi = 12.0
+
+    def rate(_: float, p: np.ndarray) -> np.ndarray:
+        return np.clip((supply_psi - p) / span_psi, 0.0, 1.0) * (goal_psi - p) / DESIGN.ep_tau_s
+
+    time_s = 0.05 * np.arange(161)
+    one = Inserted("supply_saturation", effect("supply_saturation").form("starved"), (supply_psi, span_psi))
+    grid, c = make_grid(time_s, 0.05), Plant(DESIGN, (one,)).coefficients(8.0)
+    command = np.where(time_s > 0.0, goal_psi, 6.0)
+    got = pressure_response(c, grid, command, 6.0)[grid.offsets]
+    want = solve_ivp(rate, (0.0, 8.0), [6.0], t_eval=time_s, rtol=1e-8, max_step=0.01).y[0]
+    assert np.max(np.abs(got - want)) < 0.01
+    assert got.max() <= supply_psi
+
+
 def test_it_exhausts_as_before() -> None:
     time_s = 0.1 * np.arange(40)
     command, grid = np.where(time_s > 0.0, 5.0, 11.0), make_grid(time_s, 0.05)
