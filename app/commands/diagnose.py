@@ -25,7 +25,8 @@ _NO_DESIGN = "no --design given"
 _FROM_RECORD = "identified from the record"
 #: What that means.
 _WITHOUT_DESIGN = {
-    "the defaults": "the thesis's numbers are what the record is held against",
+    "the defaults": "the thesis's numbers are what the record is held against; of another valve, identify a design "
+    "first (lostmotion identify RUN... --out model.toml) and give it (--design model.toml)",
     "identified from the healthy recordings": "the gap is what has changed since",
     _FROM_RECORD: "the gap is what no numbers of the design can explain; a wrong number cannot show",
 }

@@ -92,7 +92,9 @@ def test_a_command_that_takes_effect_after_its_row(
     columns["command_psi"] = np.append(columns["command_psi"][1:], columns["command_psi"][-1])
     found = diagnosed(tmp_path / "d", write(tmp_path / "x.csv", columns), "--command-timing", words)
     assert found["verdict"] == "no_gap"
-    assert "Mind: no --design given: the defaults; the thesis's numbers are" in capsys.readouterr().out
+    minded = capsys.readouterr().out
+    assert "Mind: no --design given: the defaults; the thesis's numbers are" in minded
+    assert "of another valve, identify a design first" in minded
 
 
 @pytest.mark.thorough
