@@ -25,8 +25,8 @@ _UNBELIEVED = 0.05
 FREE = 5
 #: Nats by which the accusation of a number has to be ahead that is bent where nothing else is left.
 _ACCUSED = 3.0
-#: The share of what is a trifle beside a gap that is none where it was all that was left.
-_EXACT_TRIFLE = 0.2
+#: The share of what is a trifle beside a gap that is none where it was all that was left, and many times the noise.
+_EXACT_TRIFLE, _PLAINLY = 0.2, 10.0
 #: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
 _SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.
@@ -211,7 +211,8 @@ def _worth(findings: Findings, small: Fit, large: Fit, rules: DecisionRules, flo
     # ... and so is the little that a second one removes beside a large gap, the less so if that leaves nothing
     # ... but for a number, of which no form can be at fault: what it clearly leaves is somebody else's
     numbers = bool(small.space.causes) and not effects_of(small)
-    trifle = (_EXACT_TRIFLE if large.mse <= EXACT * floor else 1.0) * rules.trifle
+    nothing_else = large.mse <= EXACT * floor and small.mse > _PLAINLY * floor
+    trifle = (_EXACT_TRIFLE if nothing_else else 1.0) * rules.trifle
     trifle = 0.0 if numbers and small.mse > rules.quiet * floor else trifle
     tidy = gain > max(rules.complete * left, trifle * before) and size_of(large) < 3
     # numbers that nobody believes are part of what the smaller one leaves

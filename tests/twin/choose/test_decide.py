@@ -56,6 +56,7 @@ def test_where_nothing_else_is_left_less_of_the_gap_is_a_trifle(gap: float, want
     findings: Any = SimpleNamespace(none=fitted(0, gap), score=lambda one: -100.0 * one.mse)
     assert _worth(findings, fitted(1, 22.3), fitted(2, 0.91), DecisionRules(), 1.0) is wanted
     assert not _worth(findings, fitted(1, 22.3), fitted(2, 1.3), DecisionRules(), 1.0)  # a rest of the form, perhaps
+    assert not _worth(findings, fitted(1, 9.0), fitted(2, 0.91), DecisionRules(), 1.0)
 
 
 @pytest.mark.parametrize(

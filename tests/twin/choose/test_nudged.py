@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -13,6 +14,15 @@ from twin.choose.rules import DecisionRules
 from twin.fit.fitting import Fit
 from twin.judge.hearing import _missed
 from twin.search.claims import nudged, suspected
+from twin.search.findings import Findings
+
+
+def plainly(none: float, *fits: tuple[Fit, float]) -> Findings:
+    """Findings about a reading without coarse steps."""
+    findings = real(none, *fits)
+    channel: Any = findings.channel
+    channel.half = 0.0
+    return findings
 
 
 def sure(mse: float, name: str, form: str, moved: dict[str, float], accused: str = "") -> Fit:
@@ -56,8 +66,8 @@ def test_unseen_data_that_do_without_the_accusation_do_not_without_the_number() 
     alone = sure(1.02, "position_dependent_friction", "spot", {"tau": 0.05})
     both = sure(1.02, "position_dependent_friction", "spot", {"tau": 0.05}, "tau")
     with_it, without = (
-        decide(real(80.0, *fits), DecisionRules()) for fits in (((alone, 0.0), (both, 8.0)), ((alone, 0.0),))
+        decide(plainly(80.0, *fits), DecisionRules()) for fits in (((alone, 0.0), (both, 8.0)), ((alone, 0.0),))
     )
     assert _missed(without, with_it)
     as_designed = sure(1.02, "position_dependent_friction", "spot", {})
-    assert not _missed(decide(real(80.0, (as_designed, 0.0)), DecisionRules()), with_it)
+    assert not _missed(decide(plainly(80.0, (as_designed, 0.0)), DecisionRules()), with_it)
