@@ -43,7 +43,7 @@ class Weights:
     confusable: float = 0.03
     ceiling: float = 0.9
     exact: float = 0.98
-    further: float = 0.75
+    further: float = 0.8
     third: float = 0.5
     twin_ceiling: float = 0.7
 
