@@ -167,20 +167,33 @@ _HELD_BACK, _ROWS = 0.1, 20
 
 
 def _swung(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
-    """The swings that the pressure shows where the supply holds it back; as the parameters say where none does."""
-    record = records[0]
+    """The swings that the pressure shows where the supply holds it back; as the parameters say where none does.
+
+    By the recording that shows most of them, which may be a window of a longer one: the swing is told from where it
+    begins, from where the first one does, and from where their clock does.
+    """
+    shown = [_shown(record, scales) for record in records]
+    k = max(range(len(shown)), key=lambda one: shown[one][0].size, default=0)
+    if not shown or shown[k][0].size < _ROWS:
+        return []
+    found: dict[tuple[float, ...], None] = {}
+    for origin_s in dict.fromkeys((records[k].time_s[0], records[0].time_s[0], 0.0)):
+        at_s, highest = shown[k][0] - origin_s, shown[k][1]
+        tried = [(*_wave(at_s, highest, period_s), float(period_s)) for period_s in _PERIODS * scales.time]
+        able = [one for one in tried if max(abs(v) for v in one[2:4]) < _COSINE.upper * scales.pressure]
+        valleys = [b for a, b, c in zip(able, able[1:], able[2:], strict=False) if b[0] <= min(a[0], c[0])]
+        found |= dict.fromkeys(one[1:] for one in sorted(valleys)[:_FEW])
+    return list(found)
+
+
+def _shown(record: Recording, scales: Scales) -> tuple[FloatArray, FloatArray]:
+    """When a recorded pressure is held back, and what it is then."""
     read = np.zeros(record.n, dtype=bool) if record.pressure is None else np.isfinite(record.pressure)
     if record.pressure is None or read.sum() < _ROWS:
-        return []
+        return np.zeros(0), np.zeros(0)
     time_s, pressure = record.time_s[read], record.pressure[read]
     held = _held_back(record.command[read], pressure, time_s, _HELD_BACK * scales.pressure)
-    if held.sum() < _ROWS:
-        return []
-    at_s, highest = time_s[held] - record.time_s[0], pressure[held]
-    tried = [(*_wave(at_s, highest, period_s), float(period_s)) for period_s in _PERIODS * scales.time]
-    able = [one for one in tried if max(abs(v) for v in one[2:4]) < _COSINE.upper * scales.pressure]
-    valleys = [b for a, b, c in zip(able, able[1:], able[2:], strict=False) if b[0] <= min(a[0], c[0])]
-    return [one[1:] for one in sorted(valleys)[:_FEW]]
+    return time_s[held], pressure[held]
 
 
 def _held_back(command: FloatArray, pressure: FloatArray, time_s: FloatArray, least: float) -> np.ndarray:

@@ -122,3 +122,15 @@ def test_a_supply_that_swings_is_found() -> None:
     assert result.causes == ("supply_saturation",)
     assert converter.accepted.mse < 1.1
     assert converter.accepted.values()[-1] == pytest.approx(90.0, rel=0.05)
+
+
+def test_the_swing_is_told_by_the_window_that_shows_it_and_from_where_the_clock_begins() -> None:
+    time_s, command = commands(2500)
+    shown, rows = pressure(plant("swinging"), n=2500), slice(900, 2500)
+    quiet = Recording("first", time_s[:200], np.full(200, 5.0), np.zeros(200), np.full(200, 5.0))
+    later = Recording("later", time_s[rows], command[rows], np.zeros(1600), shown[rows])
+    starts_for = EFFECT.form("swinging").starts_for
+    assert starts_for is not None
+    near = [s for s in starts_for([quiet, later], Scales()) if abs(s[3] / WAVE[3] - 1.0) < 0.05]
+    assert min(abs(s[1] - WAVE[1]) + abs(s[2] - WAVE[2]) for s in near) < 0.5
+    assert starts_for([quiet], Scales()) == []
