@@ -5,20 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-
-from logs.recording import FloatArray, Recording
-from twin.kernels.held import held_squares
+from logs.recording import Recording
 from twin.kernels.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
 from twin.model.effect import Apply, Coefficients, Effect, Form, Parameter, Scales
+from twin.model.held_band import likely_bands
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.
 _LOOKS = 400
-#: Bands that a measured pressure is held against, as shares of the command's range; rows of it; how many are tried, and
-#: how far apart they are.
-_SHARES, _ROWS, _TRIED, _APART = np.geomspace(0.003, 0.3, 4600), 12_000, 8, 1.002
-
-
+#: Bands that a fit starts from where a pressure was measured.
+_TRIED = 8
 _STARTS = (0.015, 0.05, 0.15, 0.4)
 
 
@@ -40,28 +35,8 @@ def _band(doc: str, smooth: bool) -> tuple[Parameter]:
 
 def _held(records: Sequence[Recording], scales: Scales) -> list[tuple[float, ...]]:
     """Bands by which the recorded pressure follows the command best; as the parameter says where none was recorded."""
-    read = [(r.command[:_ROWS], r.pressure[:_ROWS]) for r in records if r.pressure is not None]
-    read = [(u, p) for u, p in read if np.isfinite(p[0]) and np.ptp(u) > 0.0]
-    if not read:
-        return []
-    most = max(1, _ROWS // min(len(read), 4))
-    read = [(u[:most], p[:most]) for u, p in read[:4]]
-    bands = _SHARES * max(float(np.ptp(u)) for u, _ in read)
-    left = np.array([_left(sum((held_squares(u, p, band) for u, p in read), np.zeros((4, 4)))) for band in bands])
-    best: list[float] = []
-    for k in np.argsort(left):
-        if all(max(bands[k] / other, other / bands[k]) > _APART for other in best):
-            best.append(float(bands[k]))
-        if len(best) == _TRIED:
-            break
-    return [*((band,) for band in best), *((start * scales.pressure,) for start in _STARTS)]
-
-
-def _left(sums: FloatArray) -> float:
-    """What the best lag leaves of the squares of the pressure. `sums`: see `held_squares`."""
-    normal = np.triu(sums) + np.triu(sums, 1).T
-    known, wanted = normal[:3, :3], normal[:3, 3]
-    return float(normal[3, 3] - wanted @ np.linalg.pinv(known) @ wanted)
+    best = likely_bands(records, _TRIED)
+    return [*((band,) for _, band in best), *((start * scales.pressure,) for start in _STARTS)] if best else []
 
 
 def _mode(mode: float) -> Apply:

@@ -15,6 +15,7 @@ from twin.kernels.active import acts
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
+from twin.kernels.held import accepted_before, banded
 from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.slots import (
@@ -102,7 +103,9 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         polled(time_s, source, offsets, clock(c, time_s[0]), command[0], goal)
     if c[EP_BAND_MODE] in (1.0, 2.0):
         source, goal = goal, np.empty(goal.size)
-        _banded(source, c[EP_BAND], c[EP_BAND_MODE] == 1.0, (p0 - c[EP_ZERO]) / c[EP_GAIN], goal)
+        start = (p0 - c[EP_ZERO]) / c[EP_GAIN]
+        hold = bool(c[EP_BAND_MODE] == 1.0)
+        banded(source, c[EP_BAND], hold, accepted_before(source[0], c[EP_BAND], start) if hold else start, goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER or c[EP_DRIFTS] != 0.0:
         most = supply(c, time_s, offsets, goal.size, time_s[0])
         goal = supplied(zero(c, time_s, offsets, goal.size, time_s[0]) + c[EP_GAIN] * goal, most, c)
@@ -192,22 +195,6 @@ def _delayed(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, dead_
         for f in range(offsets[i - 1] + 1, offsets[i] + 1):
             out[f], j = _mean_command(time_s, command, begin, begin + h, j)
             begin += h
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _banded(values: FloatArray, band: float, hold: bool, start: float, out: FloatArray) -> None:
-    """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows.
-
-    The first value was in force before the first row: what stood at `start` has seen it.
-    """
-    held = start
-    for i in range(values.size):
-        u = values[i]
-        if not hold:
-            held = max(u - band, min(u + band, held))
-        elif abs(u - held) > band:
-            held = u
-        out[i] = held
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

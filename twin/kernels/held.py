@@ -1,4 +1,4 @@
-"""What a converter's pressure says of the band within which it ignores commands: compiled."""
+"""A converter that ignores commands within a band, and what its pressure says of the band: compiled."""
 
 from __future__ import annotations
 
@@ -6,6 +6,30 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
+
+#: Of a band: a pressure that near a command is where that command was accepted, but for its noise.
+_NEAR = 0.1
+
+
+def accepted_before(command: float, band: float, start: float) -> float:
+    """What stands, where a record begins, in a converter whose pressure is at `start` then, under a first command."""
+    return command if abs(command - start) < _NEAR * band else start
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def banded(values: FloatArray, band: float, hold: bool, start: float, out: FloatArray) -> None:
+    """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows.
+
+    The first value was in force before the first row: what stood at `start` has seen it.
+    """
+    held = start
+    for i in range(values.size):
+        u = values[i]
+        if not hold:
+            held = max(u - band, min(u + band, held))
+        elif abs(u - held) > band:
+            held = u
+        out[i] = held
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -16,7 +40,7 @@ def held_squares(command: FloatArray, pressure: FloatArray, band: float) -> Floa
     come evenly: a lag, behind any gain and zero. Rows without a pressure (NaN) are left out.
     """
     sums = np.zeros((4, 4))
-    held = pressure[0]
+    held = command[0] if abs(command[0] - pressure[0]) < _NEAR * band else pressure[0]
     row = np.ones(4)
     for i in range(command.size):
         if not abs(command[i] - held) <= band:
@@ -28,3 +52,15 @@ def held_squares(command: FloatArray, pressure: FloatArray, band: float) -> Floa
             for k in range(j, 4):
                 sums[j, k] += row[j] * row[k]
     return sums
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def held_rows(command: FloatArray, start: float, band: float) -> np.ndarray:
+    """Where a command is accepted (bool, one a row) by a converter that holds still within a band, from `start` on."""
+    accepted = np.zeros(command.size, dtype=np.bool_)
+    held = start
+    for i in range(command.size):
+        if not abs(command[i] - held) <= band:
+            held = command[i]
+            accepted[i] = True
+    return accepted

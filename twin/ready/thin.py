@@ -22,6 +22,7 @@ from twin.fit.beginning import beginning
 from twin.fit.case import Case, Span, fine_step_s
 from twin.fit.hidden_steps import hidden_step_s
 from twin.fit.trial import Trial, make_trial
+from twin.model.held_band import accepted_rows
 from twin.model.place import Place
 from twin.model.timegrid import make_grid
 from twin.noise.model import NoiseModel, SignalNoise
@@ -165,7 +166,11 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     led = span.start - span.history
     led_s = float(recording.time_s[led] - recording.time_s[0])
     dense = int(np.searchsorted(recording.time_s, recording.time_s[0] + led_s - _LEAD_LAGS * case.base.design.tau_s))
-    rows = np.concatenate([_far_apart(recording, dense), dense + _kept(recording.slice(dense, recording.n), share)])
+    accepted = np.zeros(0, dtype=np.int64)
+    if case.sigma_p is not None and share < 1.0:
+        accepted = accepted_rows(whole.recording, case.sigma_p) - span.history - dense
+    kept = _kept(recording.slice(dense, recording.n), share, accepted)
+    rows = np.concatenate([_far_apart(recording, dense), dense + kept])
     thin = thinned(recording, rows)
     false, vague = (marks[span.history : span.stop][rows] for marks in (whole.false, whole.vague))
     step_s = max(fine_step_s(case.base.design, thin), coarse_s)
@@ -178,9 +183,10 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     )
 
 
-def _kept(recording: Recording, share: float) -> npt.NDArray[np.intp]:
-    """The rows that stay of a `share` of a recording."""
-    return kept_rows(recording.command, max(2, ceil(share * recording.n)))
+def _kept(recording: Recording, share: float, accepted: npt.NDArray[np.int64]) -> npt.NDArray[np.intp]:
+    """The rows that stay of a `share` of a recording, and those in which its converter has `accepted` a command."""
+    within = accepted[(accepted >= 0) & (accepted < recording.n)]
+    return kept_rows(recording.command, max(2, ceil(share * recording.n)), within)
 
 
 def _far_apart(recording: Recording, stop: int) -> npt.NDArray[np.intp]:

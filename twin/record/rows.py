@@ -15,8 +15,11 @@ Rows = npt.NDArray[np.int64]
 _JUMP = 0.005  # share of the command's span that is a jump
 
 
-def kept_rows(command: FloatArray, most: int) -> Rows:
-    """At most `most` of the rows 0..n-1, evenly; besides them the last, and both sides of every jump of the command."""
+def kept_rows(command: FloatArray, most: int, besides: Rows | None = None) -> Rows:
+    """At most `most` of the rows 0..n-1, evenly; besides them the last, and both sides of every jump of the command.
+
+    `besides`: rows of which both sides are kept as well.
+    """
     n = command.size
     if most >= n:
         return np.arange(n, dtype=np.int64)
@@ -25,7 +28,8 @@ def kept_rows(command: FloatArray, most: int) -> Rows:
     jumps = np.flatnonzero(change > least)
     if jumps.size > most // 4:  # a command that moves all the time has no edges; its largest ones are kept
         jumps = np.sort(jumps[np.argsort(change[jumps], kind="stable")[::-1][: most // 4]])
-    edges = np.concatenate([[0, n - 1], jumps, jumps + 1])
+    more = np.zeros(0, dtype=np.int64) if besides is None else besides
+    edges = np.concatenate([[0, n - 1], jumps, jumps + 1, np.maximum(more - 1, 0), more])
     stride = ceil(n / most)
     return np.unique(np.concatenate([edges, np.arange(0, n, stride)])).astype(np.int64)
 

@@ -11,7 +11,6 @@ from logs.recording import FloatArray
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.ep import (
-    _banded,
     _mean_command,
     _mixed,
     _slewed,
@@ -23,6 +22,7 @@ from twin.kernels.ep import (
     through_ports,
 )
 from twin.kernels.follow import follow
+from twin.kernels.held import banded
 from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.slots import (
@@ -107,7 +107,7 @@ class Converter:
             self._seen = polled(time_s, source, offsets, clock(c, self._began_s), self._seen, goal)
         if c[EP_BAND_MODE] in (1.0, 2.0):
             source, goal = goal, np.empty(goal.size)
-            _banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
+            banded(source, c[EP_BAND], bool(c[EP_BAND_MODE] == 1.0), self._held, goal)
             self._held = float(goal[-1])
         most = supply(c, time_s, offsets, goal.size, self._began_s)
         goal = supplied(zero(c, time_s, offsets, goal.size, self._began_s) + c[EP_GAIN] * goal, most, c)

@@ -13,10 +13,13 @@ from tests.twin.judged import UP_TO_TWO
 from twin.diagnose import diagnose
 from twin.effects.ep_deadband import _held
 from twin.fit.space import form_starts
+from twin.kernels.held import accepted_before, held_rows
 from twin.model.catalog import effect
 from twin.model.effect import Scales
+from twin.model.held_band import accepted_rows
 from twin.model.plant import Inserted, Plant, pressure_response, stem_response
 from twin.model.timegrid import make_grid
+from twin.record.rows import kept_rows, thinned
 
 HOLD = effect("ep_deadband").form("hold")
 
@@ -51,6 +54,31 @@ def test_readings_that_are_missing_are_left_out() -> None:
     assert record.pressure is not None
     holes = np.where(np.arange(record.n) % 7 == 3, np.nan, record.pressure)
     assert _held([replace(record, pressure=holes)], Scales())[0][0] == pytest.approx(0.35, rel=2e-3)
+
+
+def test_rows_in_which_a_command_is_accepted_stay_where_others_are_left_out() -> None:
+    """Between two rows that stay nothing is accepted, so that the mean command there is as good as each."""
+    record = swung(0.35)
+    rows = accepted_rows(record, 0.01)
+    assert rows.size > 200
+    assert np.all(np.abs(np.diff(record.command[rows])) > 0.35)
+    kept = kept_rows(record.command, record.n // 3, rows)
+    assert set(rows) | set(rows - 1) <= set(kept)
+    thin = thinned(record, kept)
+    still = thin.command[held_rows(thin.command, 8.0, 0.35)]
+    np.testing.assert_allclose(still, record.command[held_rows(record.command, 8.0, 0.35)], rtol=1e-9)
+
+
+def test_a_converter_that_follows_every_command_accepts_none_in_particular() -> None:
+    record = swung(0.0)
+    assert accepted_rows(record, 0.01).size == 0
+    assert accepted_rows(replace(record, pressure=None), 0.01).size == 0
+    assert accepted_rows(replace(record, command=np.full(record.n, 8.0)), 0.01).size == 0
+
+
+@pytest.mark.parametrize(("begin_psi", "stands_psi"), [(8.01, 8.0), (8.1, 8.1), (6.0, 6.0)])
+def test_a_pressure_near_the_first_command_is_where_that_was_accepted(begin_psi: float, stands_psi: float) -> None:
+    assert accepted_before(8.0, 0.35, begin_psi) == stands_psi
 
 
 @pytest.mark.thorough
