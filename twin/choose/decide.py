@@ -26,7 +26,7 @@ FREE = 5
 #: Nats by which the accusation of a number has to be ahead that is bent where nothing else is left.
 _ACCUSED = 3.0
 #: The share of what is a trifle beside a gap that is none where it was all that was left, and many times the noise.
-_EXACT_TRIFLE, _PLAINLY = 0.2, 10.0
+_EXACT_TRIFLE, _PLAINLY = 0.25, 10.0
 #: What healthy machines leave with their numbers re-tuned, at most, over the mean of their squares.
 _SCATTER = 1.3
 #: The true model's mean squared residual is at most so many times that of the likeliest one.

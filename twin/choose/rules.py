@@ -20,7 +20,7 @@ class DecisionRules:
     further: float = 0.15
     evidence: float = 12.0
     share: float = 0.02
-    trifle: float = 0.0005
+    trifle: float = 0.0004
     thorough: float = 0.55
     complete: float = 0.8
     erratic: float = 0.7

@@ -15,7 +15,7 @@ from twin.kernels.active import acts
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
 from twin.kernels.follow import follow
-from twin.kernels.held import accepted_before, banded
+from twin.kernels.held import banded, held_at_first
 from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.slots import (
@@ -103,9 +103,9 @@ def _goal(time_s: FloatArray, command: FloatArray, offsets: np.ndarray, c: Float
         polled(time_s, source, offsets, clock(c, time_s[0]), command[0], goal)
     if c[EP_BAND_MODE] in (1.0, 2.0):
         source, goal = goal, np.empty(goal.size)
-        start = (p0 - c[EP_ZERO]) / c[EP_GAIN]
         hold = bool(c[EP_BAND_MODE] == 1.0)
-        banded(source, c[EP_BAND], hold, accepted_before(source[0], c[EP_BAND], start) if hold else start, goal)
+        start = held_at_first(float(source[0]), float(c[EP_BAND]), hold, float((p0 - c[EP_ZERO]) / c[EP_GAIN]))
+        banded(source, c[EP_BAND], hold, start, goal)
     if c[EP_ZERO] != 0.0 or c[EP_GAIN] != 1.0 or c[EP_SUPPLY] < FOREVER or c[EP_DRIFTS] != 0.0:
         most = supply(c, time_s, offsets, goal.size, time_s[0])
         goal = supplied(zero(c, time_s, offsets, goal.size, time_s[0]) + c[EP_GAIN] * goal, most, c)

@@ -20,16 +20,25 @@ def accepted_before(command: float, band: float, start: float) -> float:
 def banded(values: FloatArray, band: float, hold: bool, start: float, out: FloatArray) -> None:
     """Fills `out` with `values` behind a band: `hold` jumps to the value once it is outside, else a play follows.
 
-    The first value was in force before the first row: what stood at `start` has seen it.
+    What stands at `start` has seen the first value, which was in force before the first row (see `held_at_first`).
     """
     held = start
-    for i in range(values.size):
+    out[0] = held
+    for i in range(1, values.size):
         u = values[i]
         if not hold:
             held = max(u - band, min(u + band, held))
         elif abs(u - held) > band:
             held = u
         out[i] = held
+
+
+def held_at_first(command: float, band: float, hold: bool, start: float) -> float:
+    """What a converter with a band stands at when it has seen the first command of a record."""
+    if not hold:
+        return max(command - band, min(command + band, start))
+    stands = accepted_before(command, band, start)
+    return command if abs(command - stands) > band else stands
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -22,7 +22,7 @@ from twin.kernels.ep import (
     through_ports,
 )
 from twin.kernels.follow import follow
-from twin.kernels.held import banded
+from twin.kernels.held import banded, held_at_first
 from twin.kernels.polled import polled
 from twin.kernels.ringing import ringing_pass
 from twin.kernels.slots import (
@@ -50,7 +50,8 @@ class Converter:
     def __init__(self, c: FloatArray, time_s: float, command: float, p0: float) -> None:
         self._c = c = through_ports(c)
         self.pressure = p0
-        self._held = (p0 - c[EP_ZERO]) / c[EP_GAIN]
+        hold, start = bool(c[EP_BAND_MODE] == 1.0), (p0 - c[EP_ZERO]) / c[EP_GAIN]
+        self._held = held_at_first(command, float(c[EP_BAND]), hold, float(start))
         self._rows: deque[tuple[float, float]] = deque([(time_s, command)])
         self._mixed = self._seen = command
         self._began_s = time_s

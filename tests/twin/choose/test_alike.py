@@ -49,10 +49,13 @@ def test_a_wrong_zero_and_a_stop_that_is_off_are_alike_where_the_other_stop_is_n
 
 
 @pytest.mark.thorough
-def test_at_both_stops_a_wrong_zero_is_like_no_single_stop() -> None:
+def test_at_both_stops_a_wrong_zero_is_like_both_stops_elsewhere_and_like_no_single_one() -> None:
     decision, _ = wrong_zero(13.0)
     assert decision.names == ("lvdt_calibration",)
-    assert "reduced_travel" not in alike(decision, "lvdt_calibration")
+    assert "reduced_travel" in alike(decision, "lvdt_calibration")
+    [stops] = [f for f in decision.findings.fits if f.names == ("reduced_travel",)]
+    form = stops.space.causes[0].form
+    assert form is not None and form.name.startswith("both_stops")
 
 
 @pytest.mark.thorough

@@ -37,7 +37,7 @@ def test_of_twins_the_one_of_the_more_usual_size_is_named(lag_s: float, name: st
     decision = settled(late(lag_s), DecisionRules(), Weights())
     assert decision.names == (name,)
     weighed = weigh(decision, Weights())
-    assert weighed.probability[name] == pytest.approx(Weights().twin_ceiling, abs=0.02)
+    assert 0.55 < weighed.probability[name] <= Weights().twin_ceiling
     assert 0.1 < weighed.probability[twin] < weighed.probability[name]
     assert weighed.sets == ((name, twin),)
 
