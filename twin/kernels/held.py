@@ -61,15 +61,3 @@ def held_squares(command: FloatArray, pressure: FloatArray, band: float) -> Floa
             for k in range(j, 4):
                 sums[j, k] += row[j] * row[k]
     return sums
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def held_rows(command: FloatArray, start: float, band: float) -> np.ndarray:
-    """Where a command is accepted (bool, one a row) by a converter that holds still within a band, from `start` on."""
-    accepted = np.zeros(command.size, dtype=np.bool_)
-    held = start
-    for i in range(command.size):
-        if not abs(command[i] - held) <= band:
-            held = command[i]
-            accepted[i] = True
-    return accepted

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from logs.recording import FloatArray, Recording
-from twin.kernels.held import accepted_before, held_rows, held_squares
+from twin.kernels.held import banded, held_at_first, held_squares
 
 #: Bands that a measured pressure is held against, as shares of the command's range; how far apart those are that are
 #: told apart; rows and recordings that are looked at.
@@ -60,8 +60,9 @@ def accepted_rows(record: Recording, sigma: float) -> npt.NDArray[np.int64]:
     share, band = likely_bands([record], 1)[0]
     if share > _SEEN:
         return none
-    start = accepted_before(float(record.command[0]), band, float(pressure[0]))
-    return np.flatnonzero(held_rows(record.command, start, band))
+    goal, first = np.empty(record.n), float(record.command[0])
+    banded(record.command, band, True, held_at_first(first, band, True, float(pressure[0])), goal)
+    return np.flatnonzero(np.diff(goal, prepend=goal[0]))
 
 
 def _left(sums: FloatArray) -> float:

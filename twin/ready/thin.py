@@ -167,8 +167,8 @@ def _trial(case: Case, span: Span, share: float, coarse_s: float) -> Trial:
     led_s = float(recording.time_s[led] - recording.time_s[0])
     dense = int(np.searchsorted(recording.time_s, recording.time_s[0] + led_s - _LEAD_LAGS * case.base.design.tau_s))
     accepted = np.zeros(0, dtype=np.int64)
-    if case.sigma_p is not None and share < 1.0:
-        accepted = accepted_rows(whole.recording, case.sigma_p) - span.history - dense
+    if case.sigma_p is not None and share < 1.0 and span.start == 0:  # what is held where a window begins nobody knows
+        accepted = accepted_rows(whole.recording, case.sigma_p)
     kept = _kept(recording.slice(dense, recording.n), share, accepted)
     rows = np.concatenate([_far_apart(recording, dense), dense + kept])
     thin = thinned(recording, rows)
