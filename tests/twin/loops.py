@@ -9,7 +9,7 @@ import numpy as np
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.model.catalog import effect
-from twin.model.effect import Coefficients
+from twin.model.coefficients import Coefficients
 from twin.model.plant import Inserted, Plant, stem_response
 from twin.model.timegrid import make_grid
 from twin.replay.valve import Valve

@@ -14,9 +14,9 @@ from tests.twin.trials import SIGMA, trial_of
 from twin.diagnose import diagnose
 from twin.fit.case import make_case
 from twin.fit.channel import position_channel, predict_reading
-from twin.kernels.slots import KNOTS
+from twin.kernels.sensor_slots import KNOTS
 from twin.model.catalog import effect
-from twin.model.effect import Coefficients
+from twin.model.coefficients import Coefficients
 from twin.model.place import Place
 from twin.model.plant import Inserted, Plant, reading_response
 from twin.model.timegrid import make_grid

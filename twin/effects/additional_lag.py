@@ -4,16 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import (
-    S_LAG2_S,
-    S_MASS_DAMPING,
-    S_MASS_NATURAL_S,
-    S_THRICE_S,
-    V_INERTIA_S,
-    V_TAU_AFTER_S,
-    V_TAU_BEFORE_S,
-)
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.sensor_slots import S_LAG2_S, S_MASS_DAMPING, S_MASS_NATURAL_S, S_THRICE_S
+from twin.kernels.valve_slots import V_INERTIA_S, V_TAU_AFTER_S, V_TAU_BEFORE_S
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 from twin.model.lags import DAMPING, lag_parameter, natural_s
 
 

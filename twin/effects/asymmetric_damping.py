@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from twin.kernels.slots import (
+from twin.kernels.valve_slots import (
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
     V_EASES,
@@ -17,7 +17,8 @@ from twin.kernels.slots import (
     V_TAU_OPEN_S,
     V_WITHIN,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _parameter(name: str, doc: str) -> Parameter:

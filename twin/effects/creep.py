@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import (
+from twin.kernels.tails import PRESSED
+from twin.kernels.valve_slots import (
     V_CREEP1,
     V_CREEP1_TAU_S,
     V_CREEP2,
@@ -18,8 +19,8 @@ from twin.kernels.slots import (
     V_STRETCHES,
     V_TARGET_CREEPS,
 )
-from twin.kernels.tails import PRESSED
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 #: The second time constant of the two-tail form is this many times the first.
 RATIO = 6.0

@@ -7,8 +7,9 @@ from dataclasses import replace
 
 from logs.recording import Recording
 from twin.events.onsets import clocks, onsets
-from twin.kernels.slots import EP_CYCLE_S, EP_DAMPING, EP_DEAD_FALLS, EP_DEAD_S, EP_MIXED_S, EP_RINGS_S, EP_SEEN_S
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.kernels.ep_slots import EP_CYCLE_S, EP_DAMPING, EP_DEAD_FALLS, EP_DEAD_S, EP_MIXED_S, EP_RINGS_S, EP_SEEN_S
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 
 #: Recordings that may each have a clock of their own.
 _CLOCKS = 4

@@ -9,8 +9,10 @@ import numpy as np
 from scipy.special import ndtri
 
 from twin.kernels.elastic import stretches
-from twin.kernels.slots import PLAYS, V_DAHL, V_DAHL_HALF, V_PRESLIDING, V_RINGS
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.slots import PLAYS
+from twin.kernels.valve_slots import V_DAHL, V_DAHL_HALF, V_PRESLIDING, V_RINGS
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _spread(doc: str) -> tuple[Parameter]:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import EP_DRIFTS, EP_DRIFTS_S, EP_GAIN, EP_ZERO
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.ep_slots import EP_DRIFTS, EP_DRIFTS_S, EP_GAIN, EP_ZERO
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 _GAIN = Parameter(
     name="gain",

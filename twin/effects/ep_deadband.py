@@ -6,8 +6,9 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.recording import Recording
-from twin.kernels.slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
-from twin.model.effect import Apply, Coefficients, Effect, Form, Parameter, Scales
+from twin.kernels.ep_slots import EP_BAND, EP_BAND_MODE, EP_CHAMBER, EP_LEAK, EP_SHUT, EP_ZERO
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Apply, Effect, Form, Parameter, Scales
 from twin.model.held_band import likely_bands
 
 #: What is accepted depends on all that was accepted before: a band that is off by half a percent soon loses step.

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.units import atmosphere
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AIR,
     EP_AMBIENT,
     EP_ATMOSPHERE,
@@ -20,9 +20,10 @@ from twin.kernels.slots import (
     EP_REFERENCE,
     EP_SLEW,
     EP_STROKE,
-    FOREVER,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.slots import FOREVER
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 #: Error at which a booster is fully open, as a share of the pressure that the travel takes: a tenth of a psi.
 _WIDE = 0.034

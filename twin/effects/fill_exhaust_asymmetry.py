@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_CHAMBER,
     EP_CLOG_DOWN,
     EP_CLOG_UP,
@@ -18,7 +18,8 @@ from twin.kernels.slots import (
     EP_WANES,
     EP_WANES_BELOW,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 from twin.model.shapes import bow, detrended
 
 #: Opening (fraction of travel) over which a force at the seat falls to 1/e, and about which one near it may peak.
@@ -79,12 +80,7 @@ _SKEW = Parameter(
 
 def _push(c: Coefficients, shape: FloatArray) -> None:
     # Without its straight line: that part re-tunes offset and compliance and says nothing about the fluid.
-    _shift(c, detrended(shape, c.xi))
-
-
-def _shift(c: Coefficients, shift: FloatArray) -> None:
-    c.close_shift += shift
-    c.open_shift += shift
+    c.shift(detrended(shape, c.xi))
 
 
 def _throttling(c: Coefficients, values: Sequence[float]) -> None:
@@ -141,7 +137,7 @@ def _lopsided(xi: FloatArray, skew: float) -> FloatArray:
 
 def _peak(c: Coefficients, values: Sequence[float]) -> None:
     # Nothing at either end, where offset and compliance are told: with no line of its own to take off.
-    _shift(c, values[0] * _lopsided(c.xi, values[1]))
+    c.shift(values[0] * _lopsided(c.xi, values[1]))
 
 
 def _stem_peak(c: Coefficients, values: Sequence[float]) -> None:

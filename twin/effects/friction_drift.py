@@ -7,7 +7,7 @@ from dataclasses import replace
 from math import exp
 
 from logs.recording import Recording
-from twin.kernels.slots import (
+from twin.kernels.valve_slots import (
     V_DRIFT_AMP,
     V_DRIFT_RATE,
     V_DRIFT_TAU_S,
@@ -20,7 +20,8 @@ from twin.kernels.slots import (
     V_WEAR,
 )
 from twin.model.anew import anew
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 from twin.model.shapes import WHEN
 
 _RATE = Parameter(

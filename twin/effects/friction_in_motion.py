@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import (
-    FOREVER,
+from twin.kernels.slots import FOREVER
+from twin.kernels.valve_slots import (
     V_GIVE_HIGH,
     V_GIVE_LOW,
     V_HARD_HIGH,
@@ -20,7 +20,8 @@ from twin.kernels.slots import (
     V_PRESLIDING,
     V_ROUNDED,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 _SHARE = Parameter(
     name="share",

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from twin.kernels.slots import (
+from twin.kernels.sensor_slots import (
     LESS,
     S_LESS,
     S_PLAY,
@@ -19,7 +19,8 @@ from twin.kernels.slots import (
     S_SOONER,
     S_ZERO,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 _PLAY = Parameter(
     name="play",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import S_GAIN, S_PICKS, S_PICKS_FROM, S_ZERO
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.sensor_slots import S_GAIN, S_PICKS, S_PICKS_FROM, S_ZERO
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 _GAIN = Parameter(
     name="gain",

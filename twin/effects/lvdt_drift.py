@@ -9,7 +9,7 @@ from functools import cache
 import numpy as np
 
 from logs.recording import FloatArray, Recording
-from twin.kernels.slots import (
+from twin.kernels.sensor_slots import (
     KNOTS,
     S_CYCLE_COS,
     S_CYCLE_S,
@@ -26,7 +26,8 @@ from twin.kernels.slots import (
     S_ZERO,
 )
 from twin.model.anew import anew
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 from twin.model.shapes import WHEN
 
 _RATE = Parameter(

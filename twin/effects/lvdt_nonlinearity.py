@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from logs.recording import Recording
-from twin.kernels.slots import (
+from twin.kernels.sensor_slots import (
     S_AT_OPEN,
     S_BOW,
     S_FROM,
@@ -22,7 +22,8 @@ from twin.kernels.slots import (
     S_ZERO,
     TABLE,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 
 
 def _parameter(name: str, doc: str) -> Parameter:

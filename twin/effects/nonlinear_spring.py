@@ -8,8 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.valve_slots import V_BREAKS, V_BREAKS_S, V_HALF, V_MIDDLE, V_STIFFENS
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 from twin.model.shapes import CENTRE, WHEN, WIDTH, bow, edge, swing
 
 
@@ -17,18 +18,13 @@ def _parameter(name: str, doc: str) -> Parameter:
     return Parameter(name=name, kind="pressure", lower=-1.5, upper=1.5, starts=(-0.25, 0.25), scale=0.25, doc=doc)
 
 
-def _shift(c: Coefficients, shift: FloatArray) -> None:
-    c.close_shift += shift
-    c.open_shift += shift
-
-
 def _bow(c: Coefficients, values: Sequence[float]) -> None:
-    _shift(c, values[0] * bow(c.xi))
+    c.shift(values[0] * bow(c.xi))
 
 
 def _bow_and_swing(c: Coefficients, values: Sequence[float]) -> None:
     _bow(c, values)
-    _shift(c, values[1] * swing(c.xi))
+    c.shift(values[1] * swing(c.xi))
 
 
 def _stem_bow(c: Coefficients, values: Sequence[float]) -> None:
@@ -60,7 +56,7 @@ def _area_slope(c: Coefficients, values: Sequence[float]) -> None:
 def _area_kept(c: Coefficients, values: Sequence[float]) -> None:
     # The spring makes up for it over the whole stroke: the middle of the curves is the design's at both ends.
     _area(c, values[0] * c.xi)
-    _shift(c, values[0] * c.xi * (c.design.offset + _span(c)) / (1.0 + values[0] * c.xi))
+    c.shift(values[0] * c.xi * (c.design.offset + _span(c)) / (1.0 + values[0] * c.xi))
 
 
 def _area_bow(c: Coefficients, values: Sequence[float]) -> None:
@@ -82,15 +78,15 @@ _LEAST_FOLD = 1.1
 
 
 def _step(c: Coefficients, values: Sequence[float]) -> None:
-    _shift(c, values[0] * _span(c) * values[2] * edge(c.xi, values[1], values[2]))
+    c.shift(values[0] * _span(c) * values[2] * edge(c.xi, values[1], values[2]))
 
 
 def _hardens(c: Coefficients, values: Sequence[float]) -> None:
-    _shift(c, 0.5 * values[0] * _span(c) * np.square(c.xi))
+    c.shift(0.5 * values[0] * _span(c) * np.square(c.xi))
 
 
 def _helper(c: Coefficients, values: Sequence[float]) -> None:
-    _shift(c, values[0] * _span(c) * np.maximum(c.xi - values[1], 0.0))
+    c.shift(values[0] * _span(c) * np.maximum(c.xi - values[1], 0.0))
 
 
 def _area_step(c: Coefficients, values: Sequence[float]) -> None:
@@ -108,7 +104,7 @@ def _drop(c: Coefficients, values: Sequence[float]) -> FloatArray:
 
 
 def _snaps(c: Coefficients, values: Sequence[float]) -> None:
-    _shift(c, _drop(c, values))
+    c.shift(_drop(c, values))
 
 
 def _stem_snaps(c: Coefficients, values: Sequence[float]) -> None:

@@ -8,7 +8,8 @@ from dataclasses import replace
 import numpy as np
 
 from logs.recording import FloatArray, Recording
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 from twin.model.shapes import CENTRE, WIDTH, bow, bump, detrended, edge
 
 #: Length of the raised end, as a fraction of travel.

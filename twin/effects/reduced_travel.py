@@ -8,8 +8,9 @@ import numpy as np
 
 from control.design import DesignModel
 from logs.recording import FloatArray, Recording
-from twin.kernels.slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.kernels.valve_slots import V_HARD_HIGH, V_HARD_LOW, V_HIGH, V_LOW
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 
 _ANYWHERE = (-0.01, 0.005, 0.04, 0.15, 0.35)
 _TRAVEL_IN = DesignModel().travel  # of the valve that scales refer to

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _apply(_c: Coefficients, _values: Sequence[float]) -> None:

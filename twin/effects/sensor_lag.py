@@ -4,8 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import S_DAMPING, S_LAG2_S, S_LAG3_S, S_LAG_S, S_LEADS_S, S_NATURAL_S, S_WINDOW_S, S_WINDOWS
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.sensor_slots import (
+    S_DAMPING,
+    S_LAG2_S,
+    S_LAG3_S,
+    S_LAG_S,
+    S_LEADS_S,
+    S_NATURAL_S,
+    S_WINDOW_S,
+    S_WINDOWS,
+)
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 from twin.model.lags import DAMPING, lag_parameter, natural_s
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import S_BAND, S_SEEN, S_STEP
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.sensor_slots import S_BAND, S_SEEN, S_STEP
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _apply(c: Coefficients, values: Sequence[float]) -> None:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.kernels.slots import V_TAU_CLOSE_S, V_TAU_OPEN_S
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.kernels.valve_slots import V_TAU_CLOSE_S, V_TAU_OPEN_S
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 
 def _asymmetry(doc: str) -> tuple[Parameter]:

@@ -8,8 +8,9 @@ import numpy as np
 
 from logs.recording import Recording
 from twin.events.refresh import refreshes
-from twin.kernels.slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN, S_WAITS
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.kernels.sensor_slots import S_EARLY, S_HOLD_PHASE_S, S_HOLD_S, S_SEEN, S_WAITS
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 
 _PERIOD = Parameter(
     name="period",

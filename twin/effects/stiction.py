@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from twin.kernels.slots import (
-    FOREVER,
+from twin.kernels.slots import FOREVER
+from twin.kernels.valve_slots import (
     V_AGING_S,
     V_BREAKAWAY,
     V_FADES_SQUARED,
@@ -18,7 +18,8 @@ from twin.kernels.slots import (
     V_TARGET_STICKS,
     V_TAU_AFTER_S,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter
 
 #: Speed of the target below which it rests where friction grows with the time at rest, as a share of the rate limit.
 _REST = 2e-5

@@ -10,7 +10,7 @@ import numpy as np
 
 from logs.recording import FloatArray, Recording
 from logs.units import atmosphere
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AMBIENT,
     EP_ATMOSPHERE,
     EP_CLIP,
@@ -26,7 +26,8 @@ from twin.kernels.slots import (
     EP_TANK,
     EP_TANK_CUTS,
 )
-from twin.model.effect import Coefficients, Effect, Form, Parameter, Scales
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Effect, Form, Parameter, Scales
 
 _SUPPLY = Parameter(
     name="supply",

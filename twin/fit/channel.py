@@ -15,7 +15,8 @@ import numpy as np
 from logs.recording import FloatArray, Recording
 from twin.fit.compiled import in_noise
 from twin.fit.trial import Trial, concatenate
-from twin.kernels.slots import S_CORE, V_REMEMBERS
+from twin.kernels.sensor_slots import S_CORE
+from twin.kernels.valve_slots import V_REMEMBERS
 from twin.model.plant import (
     Plant,
     core_at,

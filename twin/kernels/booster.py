@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AIR,
     EP_AMBIENT,
     EP_ATMOSPHERE,
@@ -29,8 +29,8 @@ from twin.kernels.slots import (
     EP_TANK,
     EP_TAU_FALL_S,
     EP_TAU_RISE_S,
-    FOREVER,
 )
+from twin.kernels.slots import FOREVER
 
 #: Pressure ratio below which the flow is choked: of a sharp-edged orifice, and near that of valves.
 _CHOKED = 0.5

@@ -7,7 +7,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.booster import inflow
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AMBIENT,
     EP_ATMOSPHERE,
     EP_BAND,
@@ -30,8 +30,8 @@ from twin.kernels.slots import (
     EP_TAU_RISE_S,
     EP_WANES,
     EP_WANES_BELOW,
-    FOREVER,
 )
+from twin.kernels.slots import FOREVER
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

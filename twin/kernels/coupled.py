@@ -12,8 +12,8 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.kernels.slots import (
-    FOREVER,
+from twin.kernels.slots import FOREVER
+from twin.kernels.valve_slots import (
     V_AGING_S,
     V_BREAKAWAY,
     V_DRAG_CLOSE_S,

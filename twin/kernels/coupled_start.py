@@ -7,16 +7,8 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.kernels.slots import (
-    FOREVER,
-    V_BREAKAWAY,
-    V_ON_STEM,
-    V_OUTER,
-    V_STRIBECK,
-    V_TARGET_STICKS,
-    V_TRAVEL,
-    V_WITHIN,
-)
+from twin.kernels.slots import FOREVER
+from twin.kernels.valve_slots import V_BREAKAWAY, V_ON_STEM, V_OUTER, V_STRIBECK, V_TARGET_STICKS, V_TRAVEL, V_WITHIN
 
 
 @njit(cache=True, inline="always", nogil=True, error_model="numpy")

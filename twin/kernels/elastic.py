@@ -13,7 +13,7 @@ from numba import njit
 
 from logs.recording import FloatArray
 from twin.kernels.inputs import Bends, Plays, Tables
-from twin.kernels.slots import (
+from twin.kernels.valve_slots import (
     V_DRAG_CLOSE_S,
     V_DRAG_OPEN_S,
     V_FADES_SQUARED,

@@ -14,11 +14,7 @@ from logs.recording import FloatArray
 from twin.kernels.active import acts
 from twin.kernels.booster import booster_pass
 from twin.kernels.bounded import follow_bounded
-from twin.kernels.follow import follow
-from twin.kernels.held import banded, held_at_first
-from twin.kernels.polled import polled
-from twin.kernels.ringing import ringing_pass
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AIR,
     EP_BAND,
     EP_BAND_MODE,
@@ -51,8 +47,12 @@ from twin.kernels.slots import (
     EP_TAU_RISE_S,
     EP_WANES,
     EP_ZERO,
-    FOREVER,
 )
+from twin.kernels.follow import follow
+from twin.kernels.held import banded, held_at_first
+from twin.kernels.polled import polled
+from twin.kernels.ringing import ringing_pass
+from twin.kernels.slots import FOREVER
 from twin.kernels.stroke import struck
 from twin.kernels.supply import cut, supplied, supply, zero
 

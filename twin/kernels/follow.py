@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.kernels.slots import EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.kernels.ep_slots import EP_TAU_FALL_S, EP_TAU_RISE_S
 
 _SAME = 1e-9
 

@@ -7,8 +7,8 @@ from scipy.special import expit
 
 from logs.recording import FloatArray
 from twin.kernels.active import acts
-from twin.kernels.slots import (
-    FOREVER,
+from twin.kernels.slots import FOREVER
+from twin.kernels.valve_slots import (
     V_BREAKS,
     V_BREAKS_S,
     V_DRIFT_AMP,

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from logs.recording import FloatArray
-from twin.kernels.slots import EP_DAMPING, EP_RINGS_S
+from twin.kernels.ep_slots import EP_DAMPING, EP_RINGS_S
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -15,9 +15,7 @@ from twin.kernels.active import acts
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.mean import running_mean
 from twin.kernels.second_order import swinging
-from twin.kernels.sinking import core_of, first_core
-from twin.kernels.slipping import slipped, slips
-from twin.kernels.slots import (
+from twin.kernels.sensor_slots import (
     KNOTS,
     S_AT_OPEN,
     S_BOW,
@@ -62,6 +60,8 @@ from twin.kernels.slots import (
     S_ZERO,
     TABLE,
 )
+from twin.kernels.sinking import core_of, first_core
+from twin.kernels.slipping import slipped, slips
 
 #: The pieces of a natural cubic spline are linear in its knots: (4, pieces, knots), for knots 1 apart.
 _CARDINAL = CubicSpline(np.arange(KNOTS + 1.0), np.eye(KNOTS + 1), bc_type="natural").c

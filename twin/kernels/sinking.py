@@ -11,7 +11,7 @@ from numba import njit
 from logs.recording import FloatArray
 from twin.kernels.active import acts
 from twin.kernels.play import plain_play
-from twin.kernels.slots import LESS, S_LESS, S_PLAY, S_SHARE, S_SINKS_S, S_SOONER, S_TRAVEL
+from twin.kernels.sensor_slots import LESS, S_LESS, S_PLAY, S_SHARE, S_SINKS_S, S_SOONER, S_TRAVEL
 
 #: Where the core stands: pulled by all of the linkage, and by what of a soft one pulls sooner [position].
 CoreState = tuple[float, float]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.slots import S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN
+from twin.kernels.sensor_slots import S_SLIPS, S_SLIPS_ABOVE, S_SLIPS_OPEN
 
 
 def slips(c: FloatArray) -> bool:

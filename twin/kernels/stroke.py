@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
+from twin.kernels.ep_slots import EP_STROKE
 from twin.kernels.follow import follow
-from twin.kernels.slots import EP_STROKE
 
 
 def struck(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from logs.recording import FloatArray
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_CLIP,
     EP_CUT,
     EP_DRIFTS,
@@ -16,8 +16,8 @@ from twin.kernels.slots import (
     EP_SWING_SIN,
     EP_SWINGS_S,
     EP_ZERO,
-    FOREVER,
 )
+from twin.kernels.slots import FOREVER
 
 
 def zero(c: FloatArray, time_s: FloatArray, offsets: np.ndarray, size: int, began_s: float) -> float | FloatArray:

@@ -8,7 +8,7 @@ from logs.recording import FloatArray
 from twin.kernels.inputs import Plays, Tables
 from twin.kernels.lag import elapsed_s, lagged
 from twin.kernels.play import common_start, play_target
-from twin.kernels.slots import (
+from twin.kernels.valve_slots import (
     V_CREEP1,
     V_CREEP1_TAU_S,
     V_CREEP2,

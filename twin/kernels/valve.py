@@ -25,7 +25,9 @@ from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
 from twin.kernels.rounded import rounded_start, rounded_steps
-from twin.kernels.slots import (
+from twin.kernels.stem import stem_pass
+from twin.kernels.tails import creep_tails, held_by_tails, stops_of_pull, stretch_tails, unstretched, within_stops
+from twin.kernels.valve_slots import (
     V_BREAKAWAY,
     V_DAHL,
     V_DAHL_HALF,
@@ -65,8 +67,6 @@ from twin.kernels.slots import (
     V_WEAR,
     stem_stops,
 )
-from twin.kernels.stem import stem_pass
-from twin.kernels.tails import creep_tails, held_by_tails, stops_of_pull, stretch_tails, unstretched, within_stops
 
 _SQUARED = (V_SQUARED_S, V_SQUARED_S + 1)
 _STIFF = np.array([V_BREAKAWAY, V_HELD, V_SHORT, V_KEPT, V_TAU_AFTER_S, V_ON_STEM, *_SQUARED, V_EASES, V_EASES + 1])

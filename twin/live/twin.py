@@ -10,7 +10,8 @@ import math
 
 import numpy as np
 
-from twin.kernels.slots import S_BAND, S_SEEN, V_REMEMBERS, stem_stops
+from twin.kernels.sensor_slots import S_BAND, S_SEEN
+from twin.kernels.valve_slots import V_REMEMBERS, stem_stops
 from twin.model.plant import Plant, core_at, picked_up, pulled_stem
 from twin.replay.chain import Chain
 from twin.replay.sensor import Sensor

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from twin.model.effect import Apply, Coefficients
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Apply
 
 
 def anew(law: Apply) -> Apply:

@@ -16,22 +16,14 @@ from logs.recording import FloatArray
 from twin.events.refresh import Freshness
 from twin.kernels.active import same
 from twin.kernels.ep import ep_kernel
+from twin.kernels.ep_slots import EP_TAU_FALL_S, EP_TAU_RISE_S
 from twin.kernels.play import play_target
 from twin.kernels.sensor import curvature, curved, report_on_change, sensor_kernel, static_reading
+from twin.kernels.sensor_slots import S_BAND, S_EARLY, S_GAIN, S_PICKS, S_PICKS_FROM, S_SEEN, S_TRAVEL, S_WAITS, S_ZERO
 from twin.kernels.sinking import soft_reach, sunk_by
-from twin.kernels.slots import (
-    EP_TAU_FALL_S,
-    EP_TAU_RISE_S,
-    GRID,
-    S_BAND,
-    S_EARLY,
-    S_GAIN,
-    S_PICKS,
-    S_PICKS_FROM,
-    S_SEEN,
-    S_TRAVEL,
-    S_WAITS,
-    S_ZERO,
+from twin.kernels.slots import GRID
+from twin.kernels.valve import valve_kernel
+from twin.kernels.valve_slots import (
     V_HIGH,
     V_LOW,
     V_OUTER,
@@ -42,8 +34,8 @@ from twin.kernels.slots import (
     V_TRAVEL,
     stem_stops,
 )
-from twin.kernels.valve import valve_kernel
-from twin.model.effect import Coefficients, Form
+from twin.model.coefficients import Coefficients
+from twin.model.effect import Form
 from twin.model.place import Place
 from twin.model.timegrid import TimeGrid
 

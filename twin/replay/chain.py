@@ -15,8 +15,8 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.ep import boosted
-from twin.kernels.slots import EP_AIR, EP_STROKE
-from twin.model.effect import Coefficients
+from twin.kernels.ep_slots import EP_AIR, EP_STROKE
+from twin.model.coefficients import Coefficients
 from twin.model.plant import pressure_response, stem_response
 from twin.model.timegrid import TimeGrid
 from twin.replay.converter import Converter

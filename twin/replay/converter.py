@@ -21,11 +21,7 @@ from twin.kernels.ep import (
     latest,
     through_ports,
 )
-from twin.kernels.follow import follow
-from twin.kernels.held import banded, held_at_first
-from twin.kernels.polled import polled
-from twin.kernels.ringing import ringing_pass
-from twin.kernels.slots import (
+from twin.kernels.ep_slots import (
     EP_AIR,
     EP_AMBIENT,
     EP_ATMOSPHERE,
@@ -38,8 +34,12 @@ from twin.kernels.slots import (
     EP_SLEW,
     EP_STROKE,
     EP_ZERO,
-    FOREVER,
 )
+from twin.kernels.follow import follow
+from twin.kernels.held import banded, held_at_first
+from twin.kernels.polled import polled
+from twin.kernels.ringing import ringing_pass
+from twin.kernels.slots import FOREVER
 from twin.kernels.stroke import struck
 from twin.kernels.supply import cut, supplied, supply, zero
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.sensor import filters, lags_s, leading, static_reading, swings
+from twin.kernels.sensor_slots import S_HOLD_PHASE_S, S_HOLD_S, S_LEADS_S, S_STEP, S_WINDOW_S, S_WINDOWS
 from twin.kernels.sinking import core_at_first, core_of, first_core
 from twin.kernels.slipping import slipped, slips
-from twin.kernels.slots import S_HOLD_PHASE_S, S_HOLD_S, S_LEADS_S, S_STEP, S_WINDOW_S, S_WINDOWS
 from twin.replay.lag import Lag
 from twin.replay.mean import Mean
 from twin.replay.swing import Swing

@@ -12,7 +12,8 @@ from control.design import DesignModel
 from hal.errors import BadInput
 from logs.recording import FloatArray, Recording
 from twin.events.refresh import freshness
-from twin.kernels.slots import S_CORE, S_SEEN, V_REMEMBERS
+from twin.kernels.sensor_slots import S_CORE, S_SEEN
+from twin.kernels.valve_slots import V_REMEMBERS
 from twin.model.insert import inserted_from, plant_of
 from twin.model.plant import (
     Plant,

@@ -6,9 +6,9 @@ import numpy as np
 
 from logs.recording import FloatArray
 from twin.kernels.play import common_start
-from twin.kernels.slots import V_HIGH, V_LOW, stem_stops
 from twin.kernels.valve import coupled_coefficients, coupling
-from twin.model.effect import Coefficients
+from twin.kernels.valve_slots import V_HIGH, V_LOW, stem_stops
+from twin.model.coefficients import Coefficients
 from twin.model.plant import curve_tables
 
 

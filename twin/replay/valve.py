@@ -13,7 +13,8 @@ from twin.kernels.in_time import as_unbroken, breaks, widening_at, widens
 from twin.kernels.play import common_start, plain_play, play_target
 from twin.kernels.relaxing import relaxing_target
 from twin.kernels.rings import rings_target, unstretched_rings
-from twin.kernels.slots import (
+from twin.kernels.tails import held_by_tails, stops_of_pull, unstretched, within_stops
+from twin.kernels.valve_slots import (
     V_CREEP1,
     V_CREEP1_TAU_S,
     V_CREEP2,
@@ -35,8 +36,7 @@ from twin.kernels.slots import (
     V_TAU_BEFORE_S,
     stem_stops,
 )
-from twin.kernels.tails import held_by_tails, stops_of_pull, unstretched, within_stops
-from twin.model.effect import Coefficients
+from twin.model.coefficients import Coefficients
 from twin.model.plant import curve_tables
 from twin.replay.lag import Lag
 from twin.replay.stuck import Stuck

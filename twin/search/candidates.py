@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from twin.fit.channel import Channel
 from twin.fit.space import Cause
-from twin.kernels.slots import S_SEEN
+from twin.kernels.sensor_slots import S_SEEN
 from twin.model.catalog import effects
 from twin.model.effect import Effect, Form
 from twin.model.plant import Inserted, Plant

@@ -17,7 +17,8 @@ from twin.fit.case import make_case
 from twin.fit.channel import position_channel, predict_reading
 from twin.fit.fitting import Fit, fit, starts_of
 from twin.fit.space import Cause, make_space
-from twin.kernels.slots import EP_DRIFTS, EP_DRIFTS_S, EP_ZERO, S_JUMP, S_JUMP_S, S_ZERO
+from twin.kernels.ep_slots import EP_DRIFTS, EP_DRIFTS_S, EP_ZERO
+from twin.kernels.sensor_slots import S_JUMP, S_JUMP_S, S_ZERO
 from twin.model.catalog import effect, effects
 from twin.model.effect import Scales
 from twin.model.place import Place

@@ -10,7 +10,7 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.kernels.slots import EP_ATMOSPHERE
+from twin.kernels.ep_slots import EP_ATMOSPHERE
 from twin.model.catalog import effect, effects
 from twin.model.effect import Effect, Form, Parameter, Scales
 from twin.model.place import Place

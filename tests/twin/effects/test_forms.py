@@ -16,7 +16,7 @@ from twin.fit.channel import pressure_channel
 from twin.fit.fitting import fit, starts_of
 from twin.fit.space import Cause, make_space
 from twin.kernels.sensor import static_reading
-from twin.kernels.slots import S_BOW, S_GAIN
+from twin.kernels.sensor_slots import S_BOW, S_GAIN
 from twin.model.catalog import effect
 from twin.model.effect import Scales
 from twin.model.plant import Inserted, Plant, curve_tables

@@ -10,9 +10,9 @@ import pytest
 from logs.recording import FloatArray
 from tests.twin.loops import PRESSURE, SMALL_S, TIME_S, D, at_once, plant, row_by_row
 from twin.kernels.coupled_start import coupled_start
-from twin.kernels.slots import stem_stops
 from twin.kernels.valve import _widening
-from twin.model.effect import Coefficients
+from twin.kernels.valve_slots import stem_stops
+from twin.model.coefficients import Coefficients
 from twin.model.place import Place
 from twin.model.plant import Plant, curve_tables
 

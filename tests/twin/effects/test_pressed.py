@@ -7,8 +7,8 @@ import pytest
 
 from logs.recording import FloatArray
 from tests.twin.kernels.test_relaxing import PRESSURE, TIME_S, D, K, creeping, stem
-from twin.kernels.slots import V_REMEMBERS
 from twin.kernels.tails import held_by_tails
+from twin.kernels.valve_slots import V_REMEMBERS
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, curve_tables
 

@@ -18,10 +18,10 @@ from twin.fit.channel import Channel, chain_channel, predict_pressure, pressure_
 from twin.fit.trial import make_trial
 from twin.kernels.booster import outflow
 from twin.kernels.ep import ep_kernel
-from twin.kernels.slots import EP_TAU_FALL_S, EP_TAU_RISE_S
+from twin.kernels.ep_slots import EP_TAU_FALL_S, EP_TAU_RISE_S
 from twin.live.twin import LiveTwin
 from twin.model.catalog import effect
-from twin.model.effect import Coefficients
+from twin.model.coefficients import Coefficients
 from twin.model.plant import Inserted, Plant, pressure_response
 from twin.model.timegrid import make_grid
 from twin.replay.chain import chain_response

@@ -13,7 +13,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.kernels.dahl import dahl_target
 from twin.kernels.play import common_start, play_target
-from twin.kernels.slots import V_DAHL, V_DAHL_HALF
+from twin.kernels.valve_slots import V_DAHL, V_DAHL_HALF
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, curve_tables
 

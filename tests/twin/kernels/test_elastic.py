@@ -11,7 +11,7 @@ from control.design import DesignModel
 from tests.twin.loops import advanced
 from tests.twin.springs import LONG, PRESSURE, START, TIME_S, plant, stem, stem_from, stepped
 from twin.kernels.elastic import SPRINGS, stretches
-from twin.kernels.slots import V_PRESLIDING, V_TAU_AFTER_S
+from twin.kernels.valve_slots import V_PRESLIDING, V_TAU_AFTER_S
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, stem_response
 from twin.model.timegrid import make_grid

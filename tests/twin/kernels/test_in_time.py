@@ -9,7 +9,7 @@ from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.kernels.in_time import as_unbroken, widening_at
 from twin.model.catalog import effect
-from twin.model.effect import Coefficients
+from twin.model.coefficients import Coefficients
 from twin.model.place import Place
 
 T = np.linspace(0.0, 99.0, 100)

@@ -11,8 +11,8 @@ from scipy.integrate import solve_ivp
 from control.design import DesignModel
 from logs.recording import FloatArray
 from twin.kernels.inertia import inertia_pass
-from twin.kernels.slots import V_INERTIA_S, V_TAU_AFTER_S
 from twin.kernels.valve import coupled_coefficients
+from twin.kernels.valve_slots import V_INERTIA_S, V_TAU_AFTER_S
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, stem_response
 from twin.model.timegrid import make_grid

@@ -7,8 +7,8 @@ import pytest
 
 from control.design import DesignModel
 from logs.recording import FloatArray
-from twin.kernels.slots import V_RELAX, V_RELAX_TARGET
 from twin.kernels.valve import coupled_coefficients
+from twin.kernels.valve_slots import V_RELAX, V_RELAX_TARGET
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, stem_response
 from twin.model.timegrid import make_grid

@@ -10,8 +10,8 @@ import pytest
 from tests.twin.judged import UP_TO_TWO
 from tests.twin.trials import DESIGN, SIGMA, staircase, trial_of
 from twin.diagnose import diagnose
+from twin.kernels.sensor_slots import S_COUNT, S_PLAY, S_SINKS_S
 from twin.kernels.sinking import core_of
-from twin.kernels.slots import S_COUNT, S_PLAY, S_SINKS_S
 from twin.model.catalog import effect
 from twin.model.plant import Inserted, Plant, reading_at, stem_at
 

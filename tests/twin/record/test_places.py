@@ -14,7 +14,7 @@ from tests.twin.trials import staircase, trial_of
 from twin.diagnose import diagnose
 from twin.fit.case import make_case
 from twin.fit.channel import chain_channel, predict_reading
-from twin.kernels.slots import V_DRIFT_RATE
+from twin.kernels.valve_slots import V_DRIFT_RATE
 from twin.model.catalog import effect
 from twin.model.place import Place
 from twin.model.plant import Inserted, Plant
