@@ -13,6 +13,9 @@ if TYPE_CHECKING:
     from control.design import DesignModel
     from logs.recording import CommandTiming, Recording
 
+#: Where a design is from that nobody gave.
+DEFAULTS, FROM_RECORD = "the defaults", "identified from the record"
+
 
 def load_all(paths: Sequence[Path], mapping: str | None, units: str | None, command_timing: str) -> list[Recording]:
     """All records in house units, read alike. Raises: `BadInput` naming the file, row and value that cannot be used."""
@@ -35,19 +38,36 @@ def common_units(recordings: Sequence[Recording]) -> tuple[str, str]:
 
 
 def from_open(
-    recordings: Sequence[Recording], golden: Sequence[Recording] = ()
+    recordings: Sequence[Recording], golden: Sequence[Recording] = (), another: bool = False
 ) -> tuple[list[Recording], list[Recording]]:
     """Both without what their positions read where the stem is fully open, if no design is given that says.
 
     Where the design is the defaults, whose travel is known, less than that travel is not for guessing: a sensor's zero
-    may be what has slipped. Raises: `BadInput` for recordings in different units.
+    may be what has slipped; `another`: it is known to be another valve. Raises: `BadInput` for recordings in different
+    units.
     """
     from control.identify_zero import OFF, zeroed
 
     every = [*recordings, *golden]
     common_units(every)
-    done = zeroed(every, 1.0 if not golden and _of_the_defaults(every) else OFF)
+    known = not golden and not another and _of_the_defaults(every)
+    done = zeroed(every, 1.0 if known else OFF)
     return done[: len(recordings)], done[len(recordings) :]
+
+
+def without_design(
+    recordings: Sequence[Recording], golden: Sequence[Recording]
+) -> tuple[list[Recording], list[Recording], DesignModel, str]:
+    """What `from_open` and `design_for` say where no design is given; a record in psi and in that cannot be of the
+    thesis's valve gets its own numbers, as one in other units does.
+
+    Raises: `BadInput` or `JobFailed`, as they do.
+    """
+    opened, healthy = from_open(recordings, golden)
+    model, origin = design_for(None, opened, healthy)
+    if origin == DEFAULTS and (own := _of_another(recordings, opened, model)) is not None:
+        return own[0], healthy, own[1], own[2]
+    return opened, healthy, model, origin
 
 
 def design_for(
@@ -110,8 +130,29 @@ def _without_file(
     if golden:
         return _identified(golden, pressure_unit, position_unit), "identified from the healthy recordings"
     if _of_the_defaults(recordings):
-        return DesignModel(), "the defaults"
-    return _identified(recordings, pressure_unit, position_unit), "identified from the record"
+        return DesignModel(), DEFAULTS
+    return _identified(recordings, pressure_unit, position_unit), FROM_RECORD
+
+
+def _of_another(
+    recordings: Sequence[Recording], opened: Sequence[Recording], given: DesignModel
+) -> tuple[list[Recording], DesignModel, str] | None:
+    """The recordings with their own numbers, if the `given` ones are another valve's; None if they need not be."""
+    from logs.spoken import spoken_by
+    from twin.ready.another import far_off, is_another, miss
+
+    missed = miss(opened, given)
+    if not far_off(missed):
+        return None
+    own, _ = from_open(recordings, another=True)
+    try:
+        model = _identified(own, given.pressure_unit, given.position_unit)
+    except (BadInput, JobFailed):
+        return None
+    if not is_another(model, miss(own, model), given, missed):
+        return None
+    origin = f"{FROM_RECORD}, which the thesis's numbers miss by {100.0 * missed:.0f} % of travel"
+    return own, replace(model, spoken=spoken_by(own)), origin
 
 
 def _of_the_defaults(recordings: Sequence[Recording]) -> bool:

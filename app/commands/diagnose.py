@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from app.options import bench_options, profile_of, sealed_option
+from app.recordings import DEFAULTS, FROM_RECORD
 from app.records import foreign_options
 
 if TYPE_CHECKING:
@@ -22,13 +23,12 @@ if TYPE_CHECKING:
     from twin.fit.case import Margin
 
 _NO_DESIGN = "no --design given"
-_FROM_RECORD = "identified from the record"
 #: What that means.
 _WITHOUT_DESIGN = {
-    "the defaults": "the thesis's numbers are what the record is held against; of another valve, identify a design "
+    DEFAULTS: "the thesis's numbers are what the record is held against; of another valve, identify a design "
     "first (lostmotion identify RUN... --out model.toml) and give it (--design model.toml)",
     "identified from the healthy recordings": "the gap is what has changed since",
-    _FROM_RECORD: "the gap is what no numbers of the design can explain; a wrong number cannot show",
+    FROM_RECORD: "the gap is what no numbers of the design can explain; a wrong number cannot show",
 }
 #: `identify` refuses such a record, since its numbers would not be the valve's; a gap shows in it all the same.
 _POSITIONS = "the position is the command, percent for percent, as where a positioner is told positions"
@@ -104,7 +104,7 @@ def command(
 def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], design: Path | None, out: Path) -> Outcome:
     """Diagnoses and writes everything into `out`."""
     from app.progress import diagnosis_progress
-    from app.recordings import design_for, from_open
+    from app.recordings import design_for, without_design
     from twin.diagnose import Settings, diagnose
     from twin.judge.partial import Interrupted
     from twin.model.insert import inserted_from
@@ -113,14 +113,15 @@ def _diagnosed(recordings: Sequence[Recording], golden: Sequence[Recording], des
 
     outcome = None
     if design is None:
-        recordings, golden = from_open(recordings, golden)
-    model, origin = design_for(design, recordings, golden)
+        recordings, golden, model, origin = without_design(recordings, golden)
+    else:
+        model, origin = design_for(design, recordings, golden)
     margin, known = _margin(golden, model)
     said = known if design else (*_without_design(origin, model, golden or recordings), *known)
     recordings = [replace(one, notes=(*one.notes, *said)) if k == 0 else one for k, one in enumerate(recordings)]
     try:
         with diagnosis_progress() as progress:
-            identified = origin == _FROM_RECORD
+            identified = origin.startswith(FROM_RECORD)
             settings = Settings(margin=margin)
             settings = replace(settings, doubt=_IDENTIFIED) if identified else settings
             outcome = diagnose(recordings, model, inserted_from(model), settings, progress)
@@ -143,8 +144,9 @@ def _without_design(origin: str, model: DesignModel, records: Sequence[Recording
     from control.identify_checks import told_positions
     from logs.recording import DataNote
 
-    means = _WITHOUT_DESIGN.get(origin, "")
-    if origin == _FROM_RECORD:
+    identified = origin.startswith(FROM_RECORD)
+    means = _WITHOUT_DESIGN.get(FROM_RECORD if identified else origin, "")
+    if identified:
         deadband = model.spoken.text(model.deadband, model.pressure_unit, 3)
         means += f"; a deadband of {deadband}, be it play or friction, is in the design"
     yield DataNote(f"{_NO_DESIGN}: {origin}", means)

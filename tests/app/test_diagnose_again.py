@@ -39,8 +39,7 @@ def test_a_stop_or_a_number_is_taken_in_and_nothing_else(
 
     monkeypatch.setattr("twin.diagnose.diagnose", diagnosed)
     monkeypatch.setattr("twin.write.write_outcome", lambda outcome, *_: written.append(outcome))
-    monkeypatch.setattr("app.recordings.design_for", lambda *_: (DesignModel(), origin))
-    monkeypatch.setattr("app.recordings.from_open", lambda recordings, golden: (recordings, golden))
+    monkeypatch.setattr("app.recordings.without_design", lambda *both: (*both, DesignModel(), origin))
     times = np.arange(100.0)
     outcome = verb._diagnosed([Recording("one", times, times, times)], [], None, tmp_path)
     assert len(held_against) == (2 if again else 1)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.recordings import bench_design, design_for, from_open, load_all
+from app.recordings import DEFAULTS, FROM_RECORD, bench_design, design_for, from_open, load_all, without_design
 from control.design import DesignModel, check_for_control, save_design
 from hal.errors import BadInput
 from logs.recording import Recording
@@ -97,3 +97,20 @@ def test_a_zero_far_from_fully_open_is_taken_off_where_no_design_says_where_it_i
     assert same.notes == plain.notes
     ((far,), (beside,)) = from_open([read(2.0, foreign=False)], [read(2.0, foreign=False)])
     assert abs(float(far.position.min())) < 0.01 and np.array_equal(far.position, beside.position)
+
+
+def test_a_valve_in_psi_and_in_that_cannot_be_the_thesis_s_gets_its_own_numbers(tmp_path: Path) -> None:
+    recordings = load_all([a_file(tmp_path, "psi", "in", (1.0, 1.0))], None, None, "before")
+    assert design_for(None, recordings)[1] == DEFAULTS
+    _, _, design, origin = without_design(recordings, [])
+    assert origin.startswith(FROM_RECORD) and "% of travel" in origin
+    assert design.compliance == pytest.approx(0.05, rel=0.02)
+
+
+@pytest.mark.parametrize("toy", [Toy(), Toy(tau=8.0), Toy(a1=10.5)])
+def test_the_thesis_s_valve_with_a_wrong_number_does_not(toy: Toy) -> None:
+    command = random_steps(240.0, 0.2, seed=3)
+    recordings = [record(toy, 0.2 * np.arange(command.size), command)]
+    ((same,), _, design, origin) = without_design(recordings, [])
+    assert (design, origin) == (DesignModel(), DEFAULTS)
+    assert np.array_equal(same.position, recordings[0].position)

@@ -31,20 +31,20 @@ def healthy_margin(recordings: Sequence[Recording], plant: Plant) -> Margin:
     recording that is missed by more than a quarter of the travel: it is no healthy machine of this design.
     """
     noise = estimate_noise(recordings)
-    missed = [_missed(one, plant, noise) for one in recordings]
-    for one, (position, _) in zip(recordings, missed, strict=True):
+    errors = [missed(one, plant, noise) for one in recordings]
+    for one, (position, _) in zip(recordings, errors, strict=True):
         off = float(np.sqrt(np.mean(position**2))) / plant.design.travel if position.size else 0.0
         if off > _NO_SUCH_VALVE:
             raise BadInput(
                 f"{one.name}: the design misses this healthy recording by {100.0 * off:.0f} % of travel; "
                 "give the design that belongs to the machine, or one identified from this recording, as --design"
             )
-    position, pressure = np.concatenate([p for p, _ in missed]), np.concatenate([p for _, p in missed])
+    position, pressure = np.concatenate([p for p, _ in errors]), np.concatenate([p for _, p in errors])
     known = noise.pressure.sigma if noise.pressure is not None else 0.0
     return Margin(position=_beyond(position, noise.position.sigma), pressure=_beyond(pressure, known))
 
 
-def _missed(recording: Recording, plant: Plant, noise: NoiseModel) -> tuple[FloatArray, FloatArray]:
+def missed(recording: Recording, plant: Plant, noise: NoiseModel) -> tuple[FloatArray, FloatArray]:
     """Errors of position and pressure in the rows that count; no pressure, no rows of it."""
     pressure, position = simulate_recording(plant, recording)
     late = recording.time_s - recording.time_s[0] >= SETTLE_S

@@ -11,12 +11,15 @@ from dataclasses import replace
 
 from control.design import DesignModel
 
+#: What the forms of a stop call what is missing at the closed end, which alone is the travel.
+_CLOSED = {"upper_stop": "missing", "both_stops": "missing_closed"}
+
 
 def better_identified(causes: Iterable[str], model: DesignModel) -> DesignModel | None:
     """The numbers of an updated `model` as a design without effects; None where its `causes` say nothing of numbers."""
     tables: Mapping[str, Mapping[str, object]] = model.effects
     stop, reading = tables.get("reduced_travel", {}), tables.get("lvdt_calibration", {})
-    missing = _number(stop, "missing") if stop.get("form") == "upper_stop" else 0.0
+    missing = _number(stop, _CLOSED.get(str(stop.get("form")), ""))
     gain = 1.0 + (_number(reading, "gain") if reading.get("form") in ("gain", "gain_and_zero") else 0.0)
     accused = any(name.startswith("parameter:") for name in causes)
     if not accused and missing == 0.0 and gain == 1.0:

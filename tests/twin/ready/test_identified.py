@@ -49,3 +49,11 @@ def test_what_is_no_number_of_a_design_stays_a_cause(form: str) -> None:
     effects = {"reduced_travel": {"form": form, "missing": 0.1}, "lvdt_calibration": {"form": "zero", "zero": 0.01}}
     assert better_identified(effects, replace(DESIGN, effects=effects)) is None
     assert better_identified((), DESIGN) is None
+
+
+def test_of_two_stops_the_closed_one_is_a_number() -> None:
+    stops: dict[str, float | str] = {"form": "both_stops", "missing_open": 0.0, "missing_closed": 0.08}
+    model = replace(DESIGN, effects={"reduced_travel": stops})
+    better = better_identified(["reduced_travel"], model)
+    assert better is not None and better.travel == pytest.approx(0.92 * DESIGN.travel)
+    assert np.allclose(reading(better), reading(model), atol=2e-4 * DESIGN.travel)
