@@ -137,12 +137,13 @@ def _without_file(
 def _of_another(
     recordings: Sequence[Recording], opened: Sequence[Recording], given: DesignModel
 ) -> tuple[list[Recording], DesignModel, str] | None:
-    """The recordings with their own numbers, if the `given` ones are another valve's; None if they need not be."""
+    """The recordings with their own numbers, if the `given` ones are another valve's; None if they need not be, or if
+    they are refused with these, as what is in kPa by mistake."""
     from logs.spoken import spoken_by
-    from twin.ready.another import far_off, is_another, miss
+    from twin.ready.another import admitted, far_off, is_another, miss
 
     missed = miss(opened, given)
-    if not far_off(missed):
+    if not far_off(missed) or not admitted(opened, given):
         return None
     own, _ = from_open(recordings, another=True)
     try:

@@ -12,10 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 
 from control.design import DesignModel
+from hal.errors import BadInput
 from logs.recording import Recording
 from twin.model.insert import plant_of
 from twin.noise.model import estimate_noise
 from twin.ready.healthy import missed
+from twin.record.admit import admit
 
 #: RMS of the gap, as a share of travel, below which numbers are only wrong.
 _FAR = 0.10
@@ -31,6 +33,15 @@ def miss(recordings: Sequence[Recording], design: DesignModel) -> float:
     plant, noise = plant_of(design), estimate_noise(recordings)
     errors = np.concatenate([missed(one, plant, noise)[0] for one in recordings])
     return float(np.sqrt(np.mean(errors**2))) / design.travel if errors.size else 0.0
+
+
+def admitted(recordings: Sequence[Recording], design: DesignModel) -> bool:
+    """Whether a diagnosis against the design would not refuse the records."""
+    try:
+        admit(recordings, plant_of(design), estimate_noise(recordings))
+    except BadInput:
+        return False
+    return True
 
 
 def far_off(missed: float) -> bool:

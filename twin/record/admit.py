@@ -172,8 +172,8 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
     if high - low > _ABSURD * d.travel or abs(middle) > _ABSURD * d.travel:
         low, high, travel = (d.spoken.value(float(v), d.position_unit) for v in (low, high, d.travel))
         raise BadInput(
-            f"{names}: positions of {low:.3g} to {high:.3g} {x} do not belong to a travel of {travel:.3g} {x}; "
-            f"check the column (--map position=...) and its unit (--units position=mm){_zero_hint(recordings, d)}"
+            f"{names}: positions of {low:.3g} to {high:.3g} {x} do not belong to a travel of {travel:.3g} {x}; check "
+            f"the column (--map position=...), its unit (--units position=mm) and the design{_zero_hint(recordings, d)}"
         )
     closed = d.a1 + d.travel / d.compliance
     low, middle, high = np.percentile(np.concatenate([r.command for r in recordings]), (5.0, 50.0, 95.0))
@@ -181,7 +181,7 @@ def _refuse_absurd(recordings: Sequence[Recording], plant: Plant, names: str) ->
         low, high, opens, closed = (d.spoken.value(v, d.pressure_unit) for v in (low, high, d.a2, closed))
         raise BadInput(
             f"{names}: commands of {low:.3g} to {high:.3g} {p} do not belong to curves between {opens:.3g} and "
-            f"{closed:.3g} {p}; check the column (--map command=...) and its unit (--units command=kPa)"
+            f"{closed:.3g} {p}; check the column (--map command=...), its unit (--units command=kPa) and the design"
         )
 
 
