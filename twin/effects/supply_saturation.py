@@ -18,6 +18,7 @@ from twin.kernels.ep_slots import (
     EP_DRAW,
     EP_KNEE,
     EP_REFILL_S,
+    EP_STARVED,
     EP_SUBSONIC,
     EP_SUPPLY,
     EP_SWING_COS,
@@ -85,7 +86,7 @@ def _subsonic(c: Coefficients, values: Sequence[float]) -> None:
 
 
 def _starved(c: Coefficients, values: Sequence[float]) -> None:
-    c.ep[[EP_CLIP, EP_SUBSONIC]] = values[0], -values[1]
+    c.ep[[EP_CLIP, EP_STARVED]] = values
 
 
 _WIDTH = Parameter(

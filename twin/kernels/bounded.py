@@ -23,6 +23,7 @@ from twin.kernels.ep_slots import (
     EP_RATE_UP,
     EP_REFILL_S,
     EP_SHUT,
+    EP_STARVED,
     EP_SUBSONIC,
     EP_TANK,
     EP_TANK_CUTS,
@@ -55,9 +56,9 @@ def _edged_step(error: float, edge: float, within: float, beyond: float, h: floa
 @njit(cache=True, nogil=True, error_model="numpy")
 def _given(p: float, c: FloatArray) -> float:
     """Share of the lag's flow that a weak supply gives at a pressure: by ISO 6358, or falling evenly to none over the
-    last -EP_SUBSONIC below the supply."""
-    if c[EP_SUBSONIC] < 0.0:
-        even: float = min(1.0, max(0.0, (c[EP_CLIP] - p) / -c[EP_SUBSONIC]))
+    last EP_STARVED below the supply."""
+    if c[EP_STARVED] > 0.0:
+        even: float = min(1.0, max(0.0, (c[EP_CLIP] - p) / c[EP_STARVED]))
         return even
     absolute = c[EP_ATMOSPHERE] - c[EP_AMBIENT]
     choked: float = min(1.0, c[EP_SUBSONIC] * inflow(p + absolute, c[EP_CLIP] + absolute))
@@ -104,7 +105,7 @@ def _bounded_step(p: float, v: float, h: float, c: FloatArray) -> float:
     if mode == 4.0 and error <= c[EP_BAND]:
         return p
     rate = 1.0 / max(c[EP_TAU_RISE_S] if v > p else c[EP_TAU_FALL_S], 1e-12)
-    if v > p and c[EP_SUBSONIC] != 0.0:
+    if v > p and c[EP_SUBSONIC] + c[EP_STARVED] > 0.0:
         rate *= _let_through(p, v, h * rate, c)
     elif v < p and c[EP_WANES] > 0.0:
         rate = _waned(p, v, h, rate, c)

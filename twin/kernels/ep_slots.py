@@ -48,7 +48,7 @@ EP_CHAMBER = 32  # what the stem sweeps over EP_AIR, where a narrow port or a sh
 EP_DRIFTS = 33  # by how much the zero moves in the end [pressure]
 EP_DRIFTS_S = 34  # and with which time constant, from the beginning of each recording [s]
 EP_STROKE = 35  # what a stroke of the stem takes from the pressure until air has come after it [pressure/position]
-EP_SUBSONIC = 36  # choked flow from EP_CLIP over what the lag takes [-]; 0: any; below 0: see `bounded`
+EP_SUBSONIC = 36  # choked flow from EP_CLIP over what the lag takes [-]; 0: any
 EP_CLOG_UP = 37  # what a clogged passage adds to the lag of a rising pressure, for each unit of its slope [s2/pressure]
 EP_CLOG_DOWN = 38  # and of a falling one
 EP_SHUT = 39  # error at which a pilot that has opened shuts again, as a share of EP_BAND (EP_BAND_MODE 5) [-]
@@ -63,7 +63,8 @@ EP_WANES = 47  # by what share the lag of a falling pressure is longer for each 
 EP_WANES_BELOW = 48  # this [pressure]
 EP_CYCLE_S = 49  # in which the converter looks at its command [s]; 0: all the time
 EP_SEEN_S = 50  # when it does so, after the first row [s]
-EP_COUNT = 51
+EP_STARVED = 51  # last pressures below EP_CLIP over which the flow falls evenly to none [pressure]; 0: it does not
+EP_COUNT = 52
 
 
 def neutral_ep() -> FloatArray:
